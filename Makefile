@@ -1,0 +1,179 @@
+# Steadfast. `make deps test` proves the library; `make help` lists the rest.
+
+# ---- settings: set them on the command line ------------------------------------------------------------------------------
+
+PREFIX     = /usr/local
+LIBDIR     = $(PREFIX)/lib
+INCLUDEDIR = $(PREFIX)/include
+DESTDIR    =
+
+OPTIMISE   = -O3
+SAN        =# SAN=1: with the address and undefined-behaviour sanitizers
+WERROR     =# WERROR=1: a warning fails the build
+ALSO       =# deps: further groups to install, e.g. ALSO=clang
+
+# ---- what is built from what -----------------------------------------------------------------------------------------------
+
+MAJOR := 0
+VERSION := 0.1.0
+
+MODE  := $(if $(SAN),sanitize,release)
+BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
+
+# What holds no reals exists once; all else is compiled for float and for double.
+ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c
+TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
+SCENE_SOURCES := $(wildcard demo/scenes/*.c)
+HEADERS       := $(wildcard include/steadfast/*.h)
+
+LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
+                   $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+
+TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
+TESTS           := $(TEST_NAMES:%=$(BUILD)/tests/%-f32) $(TEST_NAMES:%=$(BUILD)/tests/%-f64)
+
+STATIC := $(BUILD)/libsteadfast.a
+ifeq ($(shell uname -s),Darwin)
+SONAME      := libsteadfast.$(MAJOR).dylib
+SHARED_NAME := libsteadfast.$(VERSION).dylib
+LINK_NAME   := libsteadfast.dylib
+SHARED_FLAGS = -dynamiclib -install_name $(LIBDIR)/$(SONAME)
+else
+SONAME      := libsteadfast.so.$(MAJOR)
+SHARED_NAME := libsteadfast.so.$(VERSION)
+LINK_NAME   := libsteadfast.so
+SHARED_FLAGS = -shared -Wl,-soname,$(SONAME)
+endif
+SHARED := $(BUILD)/$(SHARED_NAME)
+
+# ---- how ---------------------------------------------------------------------------------------------------------------------
+
+WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wsign-conversion -Wfloat-conversion -Wdouble-promotion \
+            -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wnested-externs -Wredundant-decls \
+            -Wcast-qual -Wcast-align -Wpointer-arith -Wwrite-strings -Wformat=2 -Wundef -Wvla -Wswitch-enum \
+            -Wunused-macros -Winit-self -Wmissing-include-dirs $(if $(WERROR),-Werror)
+
+# The same bits everywhere: no contraction. What is allowed changes no result: sqrt need not set errno, and a division that is
+# not taken may still be computed, both of which a vector loop wants.
+ARITHMETIC := -ffp-contract=off -fno-math-errno -fno-trapping-math
+
+SANITIZE := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+comma := ,
+
+COMPILE = $(CC) -std=c99 -pedantic $(if $(SAN),-O1 -g,$(OPTIMISE)) $(WARNINGS) $(ARITHMETIC) -fPIC -fvisibility=hidden $(SANITIZE) \
+          -Iinclude -MMD -MP $(CPPFLAGS) $(CFLAGS)
+LINK    = $(CC) $(SANITIZE) $(LDFLAGS)
+
+# Asked when they are needed, not before: `make deps run` installs them on the way. Not ours to warn about: -isystem.
+package = $(shell pkg-config $(1) 2>/dev/null)
+CMOCKA_FLAGS = $(patsubst -I%,-isystem %,$(call package,--cflags cmocka))
+CMOCKA_LIBS  = $(call package,--libs cmocka)
+HAVE_CMOCKA  = pkg-config --exists cmocka 2>/dev/null
+
+# Whatever is asked for together with deps waits for it, also under -j.
+DEPS_FIRST := $(filter deps,$(MAKECMDGOALS))
+
+.PHONY: all library test deps install uninstall clean help need-cmocka
+
+all: library
+
+help:
+	@echo "make                 libsteadfast.a, the shared library, into $(BUILD)"
+	@echo "make deps            install what demo and tests need and is not there"
+	@echo "make test            all tests"
+	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
+	@echo "make clean           remove build/"
+	@echo "settings             CC=clang  SAN=1  WERROR=1  OPTIMISE=-O2  PREFIX=..."
+
+library: $(STATIC) $(BUILD)/$(LINK_NAME)
+
+$(BUILD)/once/%.o: %.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(COMPILE) -c $< -o $@
+
+$(BUILD)/f32/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(COMPILE) -c $< -o $@
+
+$(BUILD)/f64/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(COMPILE) -DSTF_DOUBLE -c $< -o $@
+
+$(STATIC): $(LIBRARY_OBJECTS)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(SHARED): $(LIBRARY_OBJECTS)
+	$(LINK) $(SHARED_FLAGS) $^ -lm -o $@
+
+$(BUILD)/$(LINK_NAME): $(SHARED)
+	@ln -sf $(SHARED_NAME) $(BUILD)/$(SONAME)
+	@ln -sf $(SONAME) $@
+
+$(BUILD)/f32/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(COMPILE) -Idemo -c $< -o $@
+
+$(BUILD)/f64/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
+
+# ---- tests -------------------------------------------------------------------------------------------------------------------
+
+test: $(TESTS) library
+	@CC="$(CC)" MAKE="$(MAKE)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
+
+need-cmocka: | $(DEPS_FIRST)
+	@$(HAVE_CMOCKA) || { echo "steadfast: the tests need cmocka: type: make deps" >&2; exit 1; }
+
+$(BUILD)/f32/tests/%.o: tests/%.c Makefile | need-cmocka
+	@mkdir -p $(@D)
+	$(COMPILE) -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
+
+$(BUILD)/f64/tests/%.o: tests/%.c Makefile | need-cmocka
+	@mkdir -p $(@D)
+	$(COMPILE) -DSTF_DOUBLE -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
+
+$(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/%.o) $(STATIC)
+	@mkdir -p $(@D)
+	$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+
+$(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
+	@mkdir -p $(@D)
+	$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+
+# ---- dependencies, installation -----------------------------------------------------------------------------------------------
+
+deps:
+	@sh .ci/deps $(ALSO)
+
+$(BUILD)/steadfast.pc: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
+	    'Name: Steadfast' 'Description: Particles, integrators and a fixed-timestep clock for game engines' \
+	    'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsteadfast' 'Libs.private: -lm' > $@
+
+.PHONY: FORCE
+FORCE:
+
+install: library $(BUILD)/steadfast.pc
+	install -d '$(DESTDIR)$(INCLUDEDIR)/steadfast' '$(DESTDIR)$(LIBDIR)/pkgconfig'
+	install -m 644 $(HEADERS) '$(DESTDIR)$(INCLUDEDIR)/steadfast'
+	install -m 644 $(STATIC) '$(DESTDIR)$(LIBDIR)'
+	install -m 755 $(SHARED) '$(DESTDIR)$(LIBDIR)'
+	ln -sf $(SHARED_NAME) '$(DESTDIR)$(LIBDIR)/$(SONAME)'
+	ln -sf $(SONAME) '$(DESTDIR)$(LIBDIR)/$(LINK_NAME)'
+	install -m 644 $(BUILD)/steadfast.pc '$(DESTDIR)$(LIBDIR)/pkgconfig'
+
+uninstall:
+	rm -f $(HEADERS:include/%='$(DESTDIR)$(INCLUDEDIR)/%')
+	-rmdir '$(DESTDIR)$(INCLUDEDIR)/steadfast'
+	rm -f '$(DESTDIR)$(LIBDIR)/libsteadfast.a' '$(DESTDIR)$(LIBDIR)/$(SHARED_NAME)' '$(DESTDIR)$(LIBDIR)/$(SONAME)' \
+	      '$(DESTDIR)$(LIBDIR)/$(LINK_NAME)' '$(DESTDIR)$(LIBDIR)/pkgconfig/steadfast.pc'
+
+clean:
+	rm -rf build
+
+.SECONDARY:
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

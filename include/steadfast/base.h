@@ -1,0 +1,78 @@
+/*
+ * base: the real type, vectors, results, the allocator, the version.
+ *
+ * Units are SI wherever a unit is named. Any other consistent set (astronomical units, days, solar masses) works
+ * as well: the library holds no physical constant.
+ *
+ * Precision: stf_real is float. `#define STF_DOUBLE` before the first Steadfast include makes it double and picks the
+ * second set of symbols of the same library; see precision.h.
+ */
+#ifndef STEADFAST_BASE_H
+#define STEADFAST_BASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "steadfast/compiler.h"
+#include "steadfast/precision.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define STF_VERSION_MAJOR 0
+#define STF_VERSION_MINOR 1
+#define STF_VERSION_PATCH 0
+
+/* The largest number of dimensions of a world. */
+#define STF_DIMENSIONS_MAX 3
+
+/* Three components. A world of fewer dimensions wants 0 in those that it does not have. */
+typedef struct stf_vector {
+    stf_real x, y, z;
+} stf_vector;
+
+/* What a function that can fail returns. Anything but STF_OK means that nothing has changed. */
+typedef enum stf_result {
+    STF_OK = 0,
+    STF_ERROR_NULL,       /* a pointer that has to point somewhere is NULL */
+    STF_ERROR_MEMORY,     /* the allocator returned NULL, or the size asked for does not fit size_t */
+    STF_ERROR_NOT_FINITE, /* a NaN or an infinity */
+    STF_ERROR_DIMENSIONS, /* dimensions over 3, or a component other than 0 in a dimension that the world lacks */
+    STF_ERROR_STEP,       /* a step that is negative, not finite, or 0 once it is divided into substeps as an stf_real */
+    STF_ERROR_SUBSTEPS,   /* 0 substeps */
+    STF_ERROR_MASS,       /* an inverse mass that is negative, infinite or NaN, or whose mass is more than an stf_real holds */
+    STF_ERROR_RADIUS,     /* a negative radius, or a radius in a world that does not keep radii */
+    STF_ERROR_PARTICLE,   /* no particle has this index */
+    STF_ERROR_FORCE,      /* no force has this id */
+    STF_ERROR_PARAMETERS, /* a force's parameters: a negative or non-finite coefficient, a spring from a particle to itself */
+    STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays */
+    STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
+    STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
+    STF_ERROR_NO_PREVIOUS, /* blending was asked of a world that does not keep previous positions */
+    STF_RESULT_COUNT
+} stf_result;
+
+/* One English sentence about `result`, without a full stop. Never NULL; static storage. */
+STF_API const char *stf_result_text(stf_result result);
+
+/* The version of the library that is linked, "major.minor.patch"; compare with STF_VERSION_* of these headers. */
+STF_API const char *stf_version(void);
+
+/*
+ * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
+ * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls it only from
+ * create, destroy, and functions that add, reserve, or set an integrator or a force: never from a step.
+ */
+typedef struct stf_allocator {
+    void *(*allocate)(void *user, size_t size, size_t alignment);
+    void (*release)(void *user, void *memory, size_t size);
+    void *user;
+} stf_allocator;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

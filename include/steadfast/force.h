@@ -1,0 +1,131 @@
+/*
+ * force: what pushes.
+ *
+ * A force is a const descriptor, the library's or your own, and an array of parameter records, which the world copies.
+ * It is called once a block, never once a particle, and adds newtons:
+ *
+ *     typedef struct wind { stf_real push; } wind;                          // N
+ *     static void blow(const void *records, size_t record_count, const stf_particles *particles, double time)
+ *     {
+ *         const wind *w = records;
+ *         (void)record_count, (void)time;
+ *         for (size_t i = 0; i < particles->count; i++)
+ *             particles->force[i] += w->push;                               // along x
+ *     }
+ *     const stf_force wind_force = {.name = "wind", .kind = STF_FIELD, .record_size = sizeof(wind), .apply = blow};
+ *     ...
+ *     stf_world_add_force(world, &wind_force, &(wind){.push = 2}, 1, NULL);
+ *
+ * A field force looks at each particle by itself and is handed one block at a time. A link force ties particles together
+ * and is handed the whole world. A world with no link force steps block by block, all stages of a block in cache; one
+ * link force makes it pass over all particles for each stage.
+ *
+ * Uniform gravity is no force but a part of the world (stf_world_def.gravity): it costs no loop.
+ */
+#ifndef STEADFAST_FORCE_H
+#define STEADFAST_FORCE_H
+
+#include "steadfast/particle.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum stf_force_kind { STF_FIELD, STF_LINK } stf_force_kind;
+
+/* What a force depends on, so that instruments can ask. */
+enum { STF_ON_POSITION = 1 << 0, STF_ON_VELOCITY = 1 << 1, STF_ON_TIME = 1 << 2 };
+
+typedef struct stf_force {
+    const char *name;
+    stf_force_kind kind;
+    unsigned depends_on; /* STF_ON_POSITION | STF_ON_VELOCITY | STF_ON_TIME */
+    size_t record_size;  /* bytes of one parameter record; 0: the force has no parameters */
+
+    /* Adds newtons to particles->force. records: [record_count], the world's copy. time in s. Required. */
+    void (*apply)(const void *records, size_t record_count, const stf_particles *particles, double time);
+
+    /* The potential energy of these particles in J, at the same arguments. NULL: none, and energies go without it. */
+    double (*potential)(const void *records, size_t record_count, const stf_particles *particles, double time);
+
+    /* Whether one record suits a world of this many dimensions and particles. NULL: any does. */
+    stf_result (*check)(const void *record, unsigned dimensions, size_t particle_count);
+
+    /*
+     * For records that name particles, else NULL: particle `removed` is gone and particle `last` (which may be the same) has
+     * got its index. Changes the record, or returns false to have it dropped.
+     */
+    bool (*renumber)(void *record, size_t removed, size_t last);
+
+    /* Called on the world's copy whenever the records change, to put them into the order that apply wants. NULL: as given. */
+    void (*arrange)(void *records, size_t record_count);
+} stf_force;
+
+/* F = -k v. The lecture's drag; Stokes drag on a sphere of radius r has k = 6 pi eta r. Cost: one pass. No potential. */
+typedef struct stf_linear_drag {
+    stf_real coefficient; /* k, kg/s, 0 or more */
+} stf_linear_drag;
+STF_API extern const stf_force stf_force_linear_drag;
+
+/* F = -c |v| v. Rayleigh's drag equation: c = rho C_d A / 2. Cost: one pass with a square root. No potential. */
+typedef struct stf_quadratic_drag {
+    stf_real coefficient; /* c, kg/m, 0 or more */
+} stf_quadratic_drag;
+STF_API extern const stf_force stf_force_quadratic_drag;
+
+/*
+ * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential
+ * -m mu / sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the
+ * force is 0. Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing.
+ */
+typedef struct stf_attractor {
+    stf_vector position; /* m */
+    stf_real strength;   /* mu = G M, m^3/s^2; negative repels */
+    stf_real softening;  /* e, m, 0 or more */
+} stf_attractor;
+STF_API extern const stf_force stf_force_attractor;
+
+/*
+ * A damped spring from a particle to a fixed point: F = -(k (l - l0) + c (v . u)) u, d = x - anchor, l = |d|, u = d / l;
+ * potential k (l - l0)^2 / 2. Hooke's law with a damper along the spring. Where l = 0 the spring has no direction
+ * and the force is 0. A field force: it ties no two particles. Cost: some ten operations a record.
+ */
+typedef struct stf_anchored_spring {
+    uint32_t particle;    /* index */
+    stf_vector anchor;    /* m */
+    stf_real stiffness;   /* k, N/m, 0 or more */
+    stf_real damping;     /* c, N s/m, 0 or more */
+    stf_real rest_length; /* l0, m, 0 or more */
+} stf_anchored_spring;
+STF_API extern const stf_force stf_force_anchored_springs;
+
+/*
+ * A damped spring between two particles: on a F = -(k (l - l0) + c ((v_a - v_b) . u)) u, d = x_a - x_b, l = |d|,
+ * u = d / l, on b the opposite; potential k (l - l0)^2 / 2. Where l = 0 the force is 0. A link force.
+ * Removing a particle drops its springs. Cost: a gather and a scatter of both ends a record.
+ */
+typedef struct stf_spring {
+    uint32_t a, b;        /* indices; not the same */
+    stf_real stiffness;   /* k, N/m, 0 or more */
+    stf_real damping;     /* c, N s/m, 0 or more */
+    stf_real rest_length; /* l0, m, 0 or more */
+} stf_spring;
+STF_API extern const stf_force stf_force_springs;
+
+/*
+ * Every particle pulls every other: F_i = -G m_i sum_j m_j d / (|d|^2 + e^2)^(3/2), d = x_i - x_j; potential
+ * -G sum over pairs m_i m_j / sqrt(|d|^2 + e^2). Newton's law, Plummer's softening. Coincident particles do not pull
+ * each other. An immovable particle has no finite mass and neither pulls nor feels: put an attractor there.
+ * A link force. Cost: n (n - 1) interactions, no memory beyond the state. One record.
+ */
+typedef struct stf_all_pairs_gravity {
+    stf_real gravitational_constant; /* G, m^3/(kg s^2) */
+    stf_real softening;              /* e, m, 0 or more */
+} stf_all_pairs_gravity;
+STF_API extern const stf_force stf_force_all_pairs_gravity;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

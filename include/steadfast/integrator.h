@@ -1,0 +1,93 @@
+/*
+ * integrator: how time passes.
+ *
+ * An integrator advances x'' = a(t, x, v) by one step. It sees flat arrays and a function that gives the acceleration at
+ * any time, position and velocity; it knows no particles, forces or worlds. It is a const descriptor: point
+ * stf_world_def.integrator at one below or at your own.
+ *
+ *     static void step(stf_system *system, stf_real dt)           // semi-implicit Euler
+ *     {
+ *         stf_real *x = system->position, *v = system->velocity, *a = system->work[0];
+ *         system->accelerate(system, system->time, x, v, a);
+ *         for (size_t i = 0; i < system->length; i++) {
+ *             v[i] += a[i] * dt;
+ *             x[i] += v[i] * dt;
+ *         }
+ *     }
+ *     const stf_integrator mine = {.name = "mine", .step = step, .order = 1, .evaluations = 1, .work_arrays = 1};
+ *
+ * Which one when, with measured figures: see the README.
+ */
+#ifndef STEADFAST_INTEGRATOR_H
+#define STEADFAST_INTEGRATOR_H
+
+#include "steadfast/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define STF_WORK_ARRAYS_MAX 8
+#define STF_HISTORY_ARRAYS_MAX 4
+
+typedef struct stf_system stf_system;
+
+/*
+ * What a step advances. All arrays have `length` reals and do not overlap. Some elements belong to no particle: they are
+ * 0, their acceleration is 0, and whatever a step writes there is lost.
+ */
+struct stf_system {
+    size_t length;      /* reals in each array */
+    double time;        /* s, when the step starts */
+    stf_real *position; /* m */
+    stf_real *velocity; /* m/s */
+    stf_real *work[STF_WORK_ARRAYS_MAX];       /* scratch: as many as the descriptor says; undefined when a step starts */
+    stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as many as the descriptor says; kept from step to step */
+    bool history_stale; /* the history is not of the step before this one (the first step; a particle was added, removed or
+                           set; forces, gravity or the step changed): build it anew from position and velocity */
+
+    /*
+     * acceleration[i] = a(time, position, velocity)[i] in m/s^2, for all `length` elements. position and velocity may be the
+     * system's own or work arrays; acceleration is another array. Costs one call of every force.
+     */
+    void (*accelerate)(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
+                       stf_real *acceleration);
+};
+
+enum {
+    STF_SYMPLECTIC = 1 << 0, /* for forces of position alone: energy errors stay bounded */
+    STF_REVERSIBLE = 1 << 1  /* for forces of position alone: a step of -dt undoes a step of dt, but for round-off */
+};
+
+typedef struct stf_integrator {
+    const char *name; /* "rk4" */
+    void (*step)(stf_system *system, stf_real dt); /* dt in s */
+    int order;                  /* of the global error, of positions and velocities, for forces of t, x and v */
+    int evaluations;            /* calls of accelerate a step, once the history is built */
+    int work_arrays;            /* 0 to STF_WORK_ARRAYS_MAX */
+    int history_arrays;         /* 0 to STF_HISTORY_ARRAYS_MAX */
+    double real_stability;      /* largest k dt (k: linear drag over mass) that does not grow */
+    double imaginary_stability; /* largest omega dt of an undamped spring that does not grow; 0: every step grows */
+    unsigned flags;             /* STF_SYMPLECTIC | STF_REVERSIBLE */
+} stf_integrator;
+
+/* Orders, evaluations and stability limits of each are in its descriptor; its formula and source are in src/integrators/. */
+STF_API extern const stf_integrator stf_explicit_euler;
+STF_API extern const stf_integrator stf_semi_implicit_euler;
+STF_API extern const stf_integrator stf_midpoint;       /* RK2 */
+STF_API extern const stf_integrator stf_improved_euler; /* Heun */
+STF_API extern const stf_integrator stf_rk4;
+STF_API extern const stf_integrator stf_position_verlet; /* Störmer */
+STF_API extern const stf_integrator stf_velocity_verlet;
+
+/* All of the above, in this order, NULL-terminated: for tests, tools and menus. */
+STF_API extern const stf_integrator *const stf_integrators[];
+
+/* The one of stf_integrators with this name, or NULL. */
+STF_API const stf_integrator *stf_integrator_find(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

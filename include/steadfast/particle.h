@@ -1,0 +1,63 @@
+/*
+ * particle: what moves.
+ *
+ * A particle is handed in and out as an stf_particle. Inside, a world keeps particles in blocks, one array a component:
+ *
+ *     positions   | x[stride] y[stride] z[stride] | x[stride] y[stride] z[stride] | ...
+ *     velocities  | the same
+ *     inverse masses, radii | [stride] | [stride] | ...
+ *
+ * where stride is a power of two: 256 floats or 128 doubles, fewer in a world that has fewer particles. A world of two
+ * dimensions has no z. Forces see these arrays as an stf_particles.
+ */
+#ifndef STEADFAST_PARTICLE_H
+#define STEADFAST_PARTICLE_H
+
+#include "steadfast/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct stf_particle {
+    stf_vector position;   /* m */
+    stf_vector velocity;   /* m/s */
+    stf_real inverse_mass; /* 1/kg; 0: nothing pushes it, it keeps its velocity */
+    stf_real radius;       /* m; kept only by worlds with keep_radius, and used by no force of the library */
+} stf_particle;
+
+/* The most particles that a block holds, and so the most that a field force is handed at once. */
+#define STF_BLOCK_BYTES 1024
+#define STF_BLOCK_MAX (STF_BLOCK_BYTES / sizeof(stf_real))
+
+/*
+ * What a force is handed: one block (a field force) or the whole world (a link force), at the state and time of one
+ * stage of the integrator, which is not always the state that the world holds. Every array is aligned to 64 bytes.
+ * In a block, component d of particle i is position[d * stride + i], and i < count. In the whole world particle i is
+ * at position[stf_particles_offset(particles, i) + d * stride].
+ */
+typedef struct stf_particles {
+    size_t count;        /* particles here */
+    size_t first;        /* the world's index of the first of them: a multiple of stride */
+    size_t stride;       /* reals from a component of a particle to its next component; a power of two */
+    unsigned shift;      /* stride == 1 << shift */
+    unsigned dimensions; /* 1, 2 or 3 */
+    const stf_real *position;     /* m */
+    const stf_real *velocity;     /* m/s */
+    const stf_real *inverse_mass; /* 1/kg, [count], by plain index */
+    stf_real *force;              /* N, laid out as position: add to it. NULL where a potential is asked for */
+} stf_particles;
+
+/* Where the first component of particle i stands in the position, velocity and force of a link force's particles. */
+static inline size_t stf_particles_offset(const stf_particles *particles, size_t i)
+{
+    const size_t block = i >> particles->shift, lane = i & (particles->stride - 1);
+
+    return ((block * particles->dimensions) << particles->shift) + lane;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

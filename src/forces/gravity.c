@@ -1,0 +1,232 @@
+/*
+ * Gravitation: attractors that stand still, and every particle by every other.
+ * Sources: I. Newton, Principia (1687), book III, prop. 7; H. C. Plummer, MNRAS 71, 460 (1911), for the softening.
+ */
+#include "distance.h"
+#include "steadfast/force.h"
+
+static stf_result attractor_check(const void *record, unsigned dimensions, size_t particle_count)
+{
+    const stf_attractor *attractor = record;
+    (void)particle_count;
+
+    if (!stf_vector_is_finite(attractor->position))
+        return STF_ERROR_NOT_FINITE;
+    if (!stf_vector_fits(attractor->position, dimensions))
+        return STF_ERROR_DIMENSIONS;
+    return isfinite(attractor->strength) && stf_is_coefficient(attractor->softening) ? STF_OK : STF_ERROR_PARAMETERS;
+}
+
+static stf_result all_pairs_check(const void *record, unsigned dimensions, size_t particle_count)
+{
+    const stf_all_pairs_gravity *gravity = record;
+    (void)dimensions, (void)particle_count;
+
+    return isfinite(gravity->gravitational_constant) && stf_is_coefficient(gravity->softening) ? STF_OK
+                                                                                               : STF_ERROR_PARAMETERS;
+}
+
+/* (|d|^2 + e^2) of a block of particles, d = x - centre, in `squares`. */
+static void softened_squares(const stf_particles *particles, const stf_real centre[STF_DIMENSIONS_MAX], stf_real softening,
+                             stf_real squares[STF_BLOCK_MAX])
+{
+    for (size_t i = 0; i < particles->count; i++)
+        squares[i] = softening * softening;
+    for (unsigned d = 0; d < particles->dimensions; d++) {
+        const stf_real *x = particles->position + d * particles->stride;
+        for (size_t i = 0; i < particles->count; i++)
+            squares[i] += (x[i] - centre[d]) * (x[i] - centre[d]);
+    }
+}
+
+/* factor = strength m / square^(3/2), from square; 0 at the very centre and for the immovable. */
+static void attraction(size_t n, stf_real *restrict squares, const stf_real *restrict inverse_mass, stf_real strength)
+{
+    for (size_t i = 0; i < n; i++) {
+        const stf_real cube_times_inverse_mass = squares[i] * stf_sqrt(squares[i]) * inverse_mass[i];
+        squares[i] = cube_times_inverse_mass > 0 ? strength / cube_times_inverse_mass : 0;
+    }
+}
+
+/* F = -factor d */
+static void pull(size_t n, stf_real *restrict force, const stf_real *restrict x, const stf_real *restrict factor,
+                 stf_real centre)
+{
+    for (size_t i = 0; i < n; i++)
+        force[i] -= factor[i] * (x[i] - centre);
+}
+
+static void attractor_apply(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    const stf_attractor *attractors = records;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++) {
+        const stf_vector p = attractors[r].position;
+        const stf_real centre[STF_DIMENSIONS_MAX] = {p.x, p.y, p.z};
+        stf_real factor[STF_BLOCK_MAX];
+
+        softened_squares(particles, centre, attractors[r].softening, factor);
+        attraction(particles->count, factor, particles->inverse_mass, attractors[r].strength);
+        for (unsigned d = 0; d < particles->dimensions; d++)
+            pull(particles->count, particles->force + d * particles->stride,
+                 particles->position + d * particles->stride, factor, centre[d]);
+    }
+}
+
+static double attractor_potential(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    const stf_attractor *attractors = records;
+    double sum = 0;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++) {
+        const double softening = (double)attractors[r].softening;
+
+        for (size_t i = 0; i < particles->count; i++) {
+            const double square = softening * softening + stf_square_to_point(particles->position + i, particles->stride,
+                                                                              particles->dimensions, attractors[r].position);
+            if (particles->inverse_mass[i] > 0 && square > 0)
+                sum -= (double)attractors[r].strength / ((double)particles->inverse_mass[i] * sqrt(square));
+        }
+    }
+    return sum;
+}
+
+/* One particle that pulls. */
+typedef struct source {
+    stf_real x[STF_DIMENSIONS_MAX];
+    stf_real strength; /* G m */
+    stf_real softening_square;
+} source;
+
+/*
+ * What one source does to the particles of one block: a -= G m d / (|d|^2 + e^2)^(3/2). The sum over sources runs in the order of
+ * their indices and the loop over the particles that they pull, so that no sum is ever split among lanes of a vector.
+ * `dimensions` is a constant at each call, so the compiler makes a loop for each.
+ */
+static inline void pull_block(unsigned dimensions, size_t n, size_t stride, stf_real *restrict a,
+                              const stf_real *restrict x, const source *restrict from)
+{
+    const stf_real sx = from->x[0], sy = from->x[1], sz = from->x[2], strength = from->strength;
+    const stf_real softening_square = from->softening_square;
+
+    for (size_t i = 0; i < n; i++) {
+        const stf_real dx = x[i] - sx;
+        const stf_real dy = dimensions > 1 ? x[stride + i] - sy : 0;
+        const stf_real dz = dimensions > 2 ? x[2 * stride + i] - sz : 0;
+        const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
+        const stf_real cube = square * stf_sqrt(square);
+        const stf_real factor = cube > 0 ? strength / cube : 0;
+
+        a[i] -= factor * dx;
+        if (dimensions > 1)
+            a[stride + i] -= factor * dy;
+        if (dimensions > 2)
+            a[2 * stride + i] -= factor * dz;
+    }
+}
+
+static void pull_block_1(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
+{
+    pull_block(1, n, stride, a, x, from);
+}
+
+static void pull_block_2(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
+{
+    pull_block(2, n, stride, a, x, from);
+}
+
+static void pull_block_3(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
+{
+    pull_block(3, n, stride, a, x, from);
+}
+
+typedef void pull_block_function(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x,
+                                 const source *from);
+
+static pull_block_function *const pull_block_in[] = {NULL, pull_block_1, pull_block_2, pull_block_3};
+
+/* F = m a, where the particle has a mass. */
+static void add_force(size_t n, stf_real *restrict force, const stf_real *restrict a, const stf_real *restrict inverse_mass)
+{
+    for (size_t i = 0; i < n; i++)
+        force[i] += inverse_mass[i] > 0 ? a[i] / inverse_mass[i] : 0;
+}
+
+static void pull_by_all(const stf_particles *all, size_t first, stf_all_pairs_gravity gravity)
+{
+    const size_t stride = all->stride, at = stf_particles_offset(all, first);
+    const size_t n = all->count - first < stride ? all->count - first : stride;
+    stf_real a[STF_DIMENSIONS_MAX * STF_BLOCK_MAX] = {0};
+
+    for (size_t j = 0; j < all->count; j++) {
+        const stf_real *x = all->position + stf_particles_offset(all, j);
+        source from = {.softening_square = gravity.softening * gravity.softening};
+
+        if (!(all->inverse_mass[j] > 0))
+            continue;
+        from.strength = gravity.gravitational_constant / all->inverse_mass[j];
+        for (unsigned d = 0; d < all->dimensions; d++)
+            from.x[d] = x[d * stride];
+        pull_block_in[all->dimensions](n, stride, a, all->position + at, &from);
+    }
+    for (unsigned d = 0; d < all->dimensions; d++)
+        add_force(n, all->force + at + d * stride, a + d * stride, all->inverse_mass + first);
+}
+
+static void all_pairs_apply(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    const stf_all_pairs_gravity *gravity = records;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++)
+        for (size_t first = 0; first < all->count; first += all->stride)
+            pull_by_all(all, first, gravity[r]);
+}
+
+static double pair_potential(const stf_particles *all, size_t i, size_t j, stf_all_pairs_gravity gravity)
+{
+    const stf_real *xi = all->position + stf_particles_offset(all, i), *xj = all->position + stf_particles_offset(all, j);
+    const double softening = (double)gravity.softening;
+    const double square = softening * softening + stf_square_between(xi, xj, all->stride, all->dimensions);
+
+    if (!(square > 0))
+        return 0;
+    return -(double)gravity.gravitational_constant /
+           ((double)all->inverse_mass[i] * (double)all->inverse_mass[j] * sqrt(square));
+}
+
+static double all_pairs_potential(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    const stf_all_pairs_gravity *gravity = records;
+    double sum = 0;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++)
+        for (size_t i = 0; i < all->count; i++)
+            for (size_t j = 0; j < i; j++)
+                if (all->inverse_mass[i] > 0 && all->inverse_mass[j] > 0)
+                    sum += pair_potential(all, i, j, gravity[r]);
+    return sum;
+}
+
+const stf_force stf_force_attractor = {
+    .name = "attractor",
+    .kind = STF_FIELD,
+    .depends_on = STF_ON_POSITION,
+    .record_size = sizeof(stf_attractor),
+    .apply = attractor_apply,
+    .potential = attractor_potential,
+    .check = attractor_check,
+};
+
+const stf_force stf_force_all_pairs_gravity = {
+    .name = "all_pairs_gravity",
+    .kind = STF_LINK,
+    .depends_on = STF_ON_POSITION,
+    .record_size = sizeof(stf_all_pairs_gravity),
+    .apply = all_pairs_apply,
+    .potential = all_pairs_potential,
+    .check = all_pairs_check,
+};

@@ -1,0 +1,37 @@
+/* What the two precisions differ in, beside the names. */
+#ifndef STEADFAST_SRC_REAL_H
+#define STEADFAST_SRC_REAL_H
+
+#include <float.h>
+#include <math.h>
+
+#include "steadfast/base.h"
+
+/* The same bits everywhere needs arithmetic in the type itself: on 32-bit x86 compile with -msse2 -mfpmath=sse. */
+#if FLT_EVAL_METHOD != 0
+#error "Steadfast needs FLT_EVAL_METHOD 0: float arithmetic in float, double arithmetic in double"
+#endif
+
+#ifdef STF_DOUBLE
+#define STF_REAL_MIN DBL_MIN
+#define STF_REAL_MAX DBL_MAX
+#define STF_REAL_NAME "double"
+static inline stf_real stf_sqrt(stf_real x) { return sqrt(x); }
+#else
+#define STF_REAL_MIN FLT_MIN
+#define STF_REAL_MAX FLT_MAX
+#define STF_REAL_NAME "float"
+static inline stf_real stf_sqrt(stf_real x) { return sqrtf(x); }
+#endif
+
+static inline bool stf_vector_is_finite(stf_vector v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+/* Whether v is 0 in the dimensions that a world of `dimensions` lacks. */
+static inline bool stf_vector_fits(stf_vector v, unsigned dimensions)
+{
+    return (dimensions > 2 || v.z == 0) && (dimensions > 1 || v.y == 0);
+}
+
+static inline bool stf_is_coefficient(stf_real x) { return isfinite(x) && x >= 0; }
+
+#endif

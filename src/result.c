@@ -1,0 +1,32 @@
+#include "steadfast/base.h"
+
+static const char *const texts[STF_RESULT_COUNT] = {
+    [STF_OK] = "no error",
+    [STF_ERROR_NULL] = "a required pointer is NULL",
+    [STF_ERROR_MEMORY] = "no memory, or a size that does not fit the address space",
+    [STF_ERROR_NOT_FINITE] = "a value is NaN or infinite",
+    [STF_ERROR_DIMENSIONS] = "dimensions are not 1, 2 or 3, or a vector is not 0 in a dimension that the world lacks",
+    [STF_ERROR_STEP] = "the step (over the substeps) is not a positive finite number that the precision can hold",
+    [STF_ERROR_SUBSTEPS] = "there must be at least 1 substep",
+    [STF_ERROR_MASS] = "the inverse mass is negative, not finite, or of a mass too large for the precision (0 is immovable)",
+    [STF_ERROR_RADIUS] = "the radius is negative or not finite, or the world was not created with keep_radius",
+    [STF_ERROR_PARTICLE] = "no particle has this index",
+    [STF_ERROR_FORCE] = "no force of this world has this id",
+    [STF_ERROR_PARAMETERS] = "a force parameter is negative or not finite, or a spring ties a particle to itself",
+    [STF_ERROR_DESCRIPTOR] = "an integrator, force or allocator lacks a required member or asks for too many arrays",
+    [STF_ERROR_FRAME_TIME] = "a frame time, time scale or display period is negative or not finite",
+    [STF_ERROR_ALPHA] = "the blending factor is not in [0, 1]",
+    [STF_ERROR_NO_PREVIOUS] = "the world was not created with keep_previous",
+};
+
+const char *stf_result_text(stf_result result)
+{
+    const unsigned index = (unsigned)result;
+
+    return index < STF_RESULT_COUNT ? texts[index] : "not a result of this library";
+}
+
+#define TEXT_OF(number) #number
+#define VERSION(major, minor, patch) TEXT_OF(major) "." TEXT_OF(minor) "." TEXT_OF(patch)
+
+const char *stf_version(void) { return VERSION(STF_VERSION_MAJOR, STF_VERSION_MINOR, STF_VERSION_PATCH); }

@@ -1,0 +1,185 @@
+#include "world.h"
+
+#define DEFAULT_STEP (1.0 / 60.0) /* s */
+
+/* Whether a step of the integrator is a number that the precision holds without loss. */
+static bool is_step(double step, unsigned substeps)
+{
+    const double integrator_step = step / substeps;
+
+    return integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX && isfinite(step);
+}
+
+static bool is_integrator(const stf_integrator *integrator)
+{
+    return integrator->name && integrator->step && integrator->work_arrays >= 0 &&
+           integrator->work_arrays <= STF_WORK_ARRAYS_MAX && integrator->history_arrays >= 0 &&
+           integrator->history_arrays <= STF_HISTORY_ARRAYS_MAX;
+}
+
+static stf_result check_gravity(stf_vector gravity, unsigned dimensions)
+{
+    if (!stf_vector_is_finite(gravity))
+        return STF_ERROR_NOT_FINITE;
+    return stf_vector_fits(gravity, dimensions) ? STF_OK : STF_ERROR_DIMENSIONS;
+}
+
+static void put_gravity(stf_world *world, stf_vector gravity)
+{
+    world->gravity[0] = gravity.x;
+    world->gravity[1] = gravity.y;
+    world->gravity[2] = gravity.z;
+}
+
+/* The def with its zeros replaced by what they stand for. */
+static stf_world_def with_defaults(const stf_world_def *given)
+{
+    stf_world_def def = *given;
+
+    if (def.dimensions == 0)
+        def.dimensions = STF_DIMENSIONS_MAX;
+    if (!def.integrator)
+        def.integrator = &stf_semi_implicit_euler;
+    if (def.step == 0)
+        def.step = DEFAULT_STEP;
+    if (def.substeps == 0)
+        def.substeps = 1;
+    return def;
+}
+
+static stf_result check_def(const stf_world_def *def)
+{
+    if (def->dimensions > STF_DIMENSIONS_MAX)
+        return STF_ERROR_DIMENSIONS;
+    if (!is_step(def->step, def->substeps))
+        return STF_ERROR_STEP;
+    if (!is_integrator(def->integrator))
+        return STF_ERROR_DESCRIPTOR;
+    return check_gravity(def->gravity, def->dimensions);
+}
+
+stf_result stf_world_create(const stf_world_def *given, stf_world **world)
+{
+    if (!given || !world)
+        return STF_ERROR_NULL;
+
+    const stf_world_def def = with_defaults(given);
+    const stf_result bad = check_def(&def);
+    stf_allocator allocator;
+
+    if (bad)
+        return bad;
+    if (!stf_allocator_complete(def.allocator, &allocator))
+        return STF_ERROR_DESCRIPTOR;
+
+    stf_world *made = stf_allocator_allocate(&allocator, sizeof *made);
+    if (!made)
+        return STF_ERROR_MEMORY;
+    *made = (stf_world){
+        .allocator = allocator,
+        .integrator = def.integrator,
+        .dimensions = def.dimensions,
+        .substeps = def.substeps,
+        .keep_previous = def.keep_previous,
+        .keep_radius = def.keep_radius,
+        .step = def.step,
+        .history_stale = true,
+    };
+    put_gravity(made, def.gravity);
+
+    const stf_result no_room = stf_storage_require(made, def.capacity, def.integrator, false);
+    if (no_room) {
+        stf_world_destroy(made);
+        return no_room;
+    }
+    *world = made;
+    return STF_OK;
+}
+
+void stf_world_destroy(stf_world *world)
+{
+    if (!world)
+        return;
+
+    const stf_allocator allocator = world->allocator;
+
+    stf_world_release_forces(world);
+    stf_storage_release(world);
+    stf_allocator_release(&allocator, world, sizeof *world);
+}
+
+stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator)
+{
+    if (!world || !integrator)
+        return STF_ERROR_NULL;
+    if (!is_integrator(integrator))
+        return STF_ERROR_DESCRIPTOR;
+
+    const stf_result no_room = stf_storage_require(world, world->count, integrator, world->link_count > 0);
+    if (no_room)
+        return no_room;
+
+    world->history_stale = world->history_stale || integrator != world->integrator;
+    world->integrator = integrator;
+    return STF_OK;
+}
+
+stf_result stf_world_set_gravity(stf_world *world, stf_vector gravity)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+
+    const stf_result bad = check_gravity(gravity, world->dimensions);
+    if (bad)
+        return bad;
+
+    put_gravity(world, gravity);
+    world->history_stale = true;
+    return STF_OK;
+}
+
+stf_result stf_world_set_step(stf_world *world, double step)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+    if (!is_step(step, world->substeps))
+        return STF_ERROR_STEP;
+    if (step == world->step)
+        return STF_OK;
+
+    world->step_start_time = stf_world_time(world);
+    world->step_start_tick = world->ticks;
+    world->step = step;
+    world->history_stale = true;
+    return STF_OK;
+}
+
+stf_result stf_world_set_substeps(stf_world *world, unsigned substeps)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+    if (substeps == 0)
+        return STF_ERROR_SUBSTEPS;
+    if (!is_step(world->step, substeps))
+        return STF_ERROR_STEP;
+
+    world->history_stale = world->history_stale || substeps != world->substeps;
+    world->substeps = substeps;
+    return STF_OK;
+}
+
+const stf_integrator *stf_world_integrator(const stf_world *world) { return world ? world->integrator : NULL; }
+unsigned stf_world_dimensions(const stf_world *world) { return world ? world->dimensions : 0; }
+unsigned stf_world_substeps(const stf_world *world) { return world ? world->substeps : 0; }
+double stf_world_step_size(const stf_world *world) { return world ? world->step : 0; }
+uint64_t stf_world_ticks(const stf_world *world) { return world ? world->ticks : 0; }
+
+double stf_world_time(const stf_world *world)
+{
+    return world ? world->step_start_time + (double)(world->ticks - world->step_start_tick) * world->step : 0;
+}
+
+stf_vector stf_world_gravity(const stf_world *world)
+{
+    return world ? (stf_vector){world->gravity[0], world->gravity[1], world->gravity[2]} : (stf_vector){0, 0, 0};
+}

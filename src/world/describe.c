@@ -1,0 +1,100 @@
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "world.h"
+
+/* Text that is written as far as there is room, and measured beyond. */
+typedef struct text {
+    char *at;
+    size_t size, length;
+} text;
+
+STF_PRINTF(2, 3) static void append(text *t, const char *format, ...)
+{
+    const size_t room = t->length < t->size ? t->size - t->length : 0;
+    va_list arguments;
+
+    va_start(arguments, format);
+    const int written = vsnprintf(room ? t->at + t->length : NULL, room, format, arguments);
+    va_end(arguments);
+    if (written > 0)
+        t->length += (size_t)written;
+}
+
+static const char *plural(unsigned long long n) { return n == 1 ? "" : "s"; }
+
+/* A row of the table; 0 passes or bytes are a dash. */
+static void append_row(text *t, const char *name, unsigned long long passes, double bytes, const char *remark)
+{
+    char pass_text[32] = "-", byte_text[32] = "-";
+
+    if (passes > 0)
+        snprintf(pass_text, sizeof pass_text, "%llu", passes);
+    if (bytes > 0)
+        snprintf(byte_text, sizeof byte_text, "%.1f", bytes);
+    append(t, "  %-32s %13s %16s%s%s\n", name, pass_text, byte_text, remark[0] ? "   " : "", remark);
+}
+
+static void append_head(text *t, const stf_world *world)
+{
+    const stf_integrator *integrator = world->integrator;
+    const unsigned long long particles = world->count, blocks = stf_world_blocks(world);
+
+    append(t, "world of %u dimension%s in %s: %llu particle%s in %llu block%s of %zu\n", world->dimensions,
+           plural(world->dimensions), STF_REAL_NAME, particles, plural(particles), blocks, plural(blocks),
+           world->storage.stride);
+    append(t, "tick of %.6g s: %u step%s of %s (order %d, %d evaluation%s)\n", world->step, world->substeps,
+           plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
+           plural((unsigned long long)integrator->evaluations));
+    if (world->link_count == 0)
+        append(t, "block by block: every pass of a tick runs in cache, memory is read and written once\n");
+    else
+        append(t, "links tie particles together: every pass runs over the whole world\n");
+}
+
+static void append_state(text *t, const stf_world *world)
+{
+    const double vector = (double)(world->dimensions * sizeof(stf_real)), real = (double)sizeof(stf_real);
+    const stf_integrator *integrator = world->integrator;
+    const unsigned long long steps = world->substeps, evaluations = (unsigned long long)integrator->evaluations;
+    const double work = world->link_count > 0 ? integrator->work_arrays * vector : 0;
+
+    append(t, "  %-32s %13s %16s\n", "", "passes a tick", "bytes a particle");
+    append_row(t, "position, velocity, inverse mass", 0, 2 * vector + real, "");
+    if (world->keep_previous)
+        append_row(t, "previous position", 1, vector, "");
+    if (world->keep_radius)
+        append_row(t, "radius", 0, real, "");
+    append_row(t, integrator->name, steps * evaluations, integrator->history_arrays * vector + work, "");
+    append_row(t, "gravity", 0, 0, "part of the integrator's passes, with every force's F / m");
+}
+
+static void append_force(text *t, const stf_world *world, const stf_added_force *added)
+{
+    const stf_force *force = added->force;
+    const unsigned long long passes = (unsigned long long)world->substeps * (unsigned long long)world->integrator->evaluations;
+    const double bytes = world->count ? (double)(added->record_count * force->record_size) / (double)world->count : 0;
+    char remark[96];
+
+    snprintf(remark, sizeof remark, "%s, %zu record%s, of%s%s%s%s", force->kind == STF_LINK ? "link" : "field",
+             added->record_count, plural(added->record_count), force->depends_on & STF_ON_POSITION ? " x" : "",
+             force->depends_on & STF_ON_VELOCITY ? " v" : "", force->depends_on & STF_ON_TIME ? " t" : "",
+             force->potential ? ", with potential" : "");
+    append_row(t, force->name, passes, bytes, remark);
+}
+
+size_t stf_world_describe(const stf_world *world, char *at, size_t size)
+{
+    text t = {.at = at, .size = at ? size : 0};
+
+    if (t.size > 0)
+        at[0] = '\0';
+    if (!world)
+        return 0;
+
+    append_head(&t, world);
+    append_state(&t, world);
+    for (size_t i = 0; i < world->force_count; i++)
+        append_force(&t, world, &world->forces[i]);
+    return t.length;
+}

@@ -1,0 +1,213 @@
+#include <string.h>
+
+#include "world.h"
+
+#define FIRST_FORCE_CAPACITY 8
+
+static bool is_force(const stf_force *force)
+{
+    return force->name && force->apply && (force->kind == STF_FIELD || force->kind == STF_LINK);
+}
+
+static stf_result check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count)
+{
+    if (!records && record_count > 0)
+        return STF_ERROR_NULL;
+    if (force->record_size == 0 && record_count > 0)
+        return STF_ERROR_PARAMETERS;
+    for (size_t i = 0; force->check && i < record_count; i++) {
+        const void *record = (const char *)records + i * force->record_size;
+        const stf_result bad = force->check(record, world->dimensions, world->count);
+        if (bad)
+            return bad;
+    }
+    return STF_OK;
+}
+
+/* Fills in `added`'s own copy of the records, in the order that the force wants. */
+static stf_result copy_records(const stf_world *world, stf_added_force *added, const void *records, size_t record_count)
+{
+    const size_t size = added->force->record_size;
+
+    added->records = NULL;
+    added->record_count = record_count;
+    added->bytes = 0;
+    if (record_count == 0)
+        return STF_OK;
+    if (record_count > SIZE_MAX / size)
+        return STF_ERROR_MEMORY;
+
+    added->bytes = record_count * size;
+    added->records = stf_allocator_allocate(&world->allocator, added->bytes);
+    if (!added->records)
+        return STF_ERROR_MEMORY;
+    memcpy(added->records, records, added->bytes);
+    if (added->force->arrange)
+        added->force->arrange(added->records, record_count);
+    return STF_OK;
+}
+
+static void release_records(const stf_world *world, stf_added_force *added)
+{
+    stf_allocator_release(&world->allocator, added->records, added->bytes);
+}
+
+static stf_result require_force_room(stf_world *world)
+{
+    if (world->force_count < world->force_capacity)
+        return STF_OK;
+
+    const size_t capacity = world->force_capacity ? 2 * world->force_capacity : FIRST_FORCE_CAPACITY;
+    stf_added_force *forces = stf_allocator_allocate(&world->allocator, capacity * sizeof *forces);
+
+    if (!forces)
+        return STF_ERROR_MEMORY;
+    if (world->forces)
+        memcpy(forces, world->forces, world->force_count * sizeof *forces);
+    stf_allocator_release(&world->allocator, world->forces, world->force_capacity * sizeof *forces);
+    world->forces = forces;
+    world->force_capacity = capacity;
+    return STF_OK;
+}
+
+static stf_added_force *find(const stf_world *world, stf_force_id id)
+{
+    for (size_t i = 0; i < world->force_count; i++)
+        if (world->forces[i].id == id)
+            return &world->forces[i];
+    return NULL;
+}
+
+stf_result stf_world_add_force(stf_world *world, const stf_force *force, const void *records, size_t record_count,
+                               stf_force_id *id)
+{
+    if (!world || !force)
+        return STF_ERROR_NULL;
+    if (!is_force(force))
+        return STF_ERROR_DESCRIPTOR;
+
+    stf_added_force added = {.force = force};
+    stf_result bad = check_records(world, force, records, record_count);
+
+    if (!bad)
+        bad = require_force_room(world);
+    if (!bad)
+        bad = copy_records(world, &added, records, record_count);
+    if (bad)
+        return bad;
+    if (force->kind == STF_LINK) {
+        bad = stf_storage_require(world, world->count, world->integrator, true);
+        if (bad) {
+            release_records(world, &added);
+            return bad;
+        }
+        world->link_count++;
+    }
+
+    added.id = ++world->last_force_id;
+    world->forces[world->force_count++] = added;
+    world->history_stale = true;
+    if (id)
+        *id = added.id;
+    return STF_OK;
+}
+
+stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *records, size_t record_count)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+
+    stf_added_force *added = find(world, id);
+    if (!added)
+        return STF_ERROR_FORCE;
+
+    stf_added_force changed = *added;
+    stf_result bad = check_records(world, added->force, records, record_count);
+    if (!bad)
+        bad = copy_records(world, &changed, records, record_count);
+    if (bad)
+        return bad;
+
+    release_records(world, added);
+    *added = changed;
+    world->history_stale = true;
+    return STF_OK;
+}
+
+const void *stf_world_force_records(const stf_world *world, stf_force_id id, size_t *record_count)
+{
+    const stf_added_force *added = world ? find(world, id) : NULL;
+
+    if (record_count)
+        *record_count = added ? added->record_count : 0;
+    return added && added->record_count > 0 ? added->records : NULL;
+}
+
+stf_result stf_world_remove_force(stf_world *world, stf_force_id id)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+
+    stf_added_force *added = find(world, id);
+    if (!added)
+        return STF_ERROR_FORCE;
+
+    if (added->force->kind == STF_LINK)
+        world->link_count--;
+    release_records(world, added);
+    world->force_count--;
+    memmove(added, added + 1, (size_t)(world->forces + world->force_count - added) * sizeof *added);
+    world->history_stale = true;
+    return STF_OK;
+}
+
+stf_force_id stf_world_force_at(const stf_world *world, size_t n)
+{
+    return world && n < world->force_count ? world->forces[n].id : 0;
+}
+
+const stf_force *stf_world_force(const stf_world *world, stf_force_id id)
+{
+    const stf_added_force *added = world ? find(world, id) : NULL;
+
+    return added ? added->force : NULL;
+}
+
+static void renumber_records(stf_added_force *added, size_t removed, size_t last)
+{
+    const size_t size = added->force->record_size;
+    char *records = added->records;
+    size_t kept = 0;
+
+    for (size_t i = 0; i < added->record_count; i++) {
+        if (!added->force->renumber(records + i * size, removed, last))
+            continue;
+        if (kept != i)
+            memcpy(records + kept * size, records + i * size, size);
+        kept++;
+    }
+    added->record_count = kept;
+    if (added->force->arrange && kept > 0)
+        added->force->arrange(records, kept);
+}
+
+void stf_world_renumber_forces(stf_world *world, size_t removed, size_t last)
+{
+    for (size_t i = 0; i < world->force_count; i++)
+        if (world->forces[i].force->renumber)
+            renumber_records(&world->forces[i], removed, last);
+}
+
+void stf_world_drop_particle_records(stf_world *world)
+{
+    for (size_t i = 0; i < world->force_count; i++)
+        if (world->forces[i].force->renumber)
+            world->forces[i].record_count = 0;
+}
+
+void stf_world_release_forces(stf_world *world)
+{
+    for (size_t i = 0; i < world->force_count; i++)
+        release_records(world, &world->forces[i]);
+    stf_allocator_release(&world->allocator, world->forces, world->force_capacity * sizeof *world->forces);
+}

@@ -1,0 +1,135 @@
+#include <string.h>
+
+#include "world.h"
+
+/* A block has at least one cache line of floats an array. */
+#define SMALLEST_STRIDE 16
+
+/* More rows than any lane has: 3 dimensions x (state, previous, history and work arrays), inverse mass, radius. */
+#define ROWS_BOUND (STF_DIMENSIONS_MAX * (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX) + 2)
+
+/* Gives `reals` of the memory to an array; counts only, where there is no memory yet. */
+static stf_real *take(stf_storage *storage, size_t reals)
+{
+    const size_t at = storage->bytes;
+
+    storage->bytes += reals * sizeof(stf_real);
+    return storage->memory ? (stf_real *)(void *)((char *)storage->memory + at) : NULL;
+}
+
+static void lay_out(stf_storage *storage, const stf_world *world)
+{
+    const size_t vectors = storage->capacity * world->dimensions;
+    const size_t work = storage->whole ? vectors : storage->stride * world->dimensions;
+
+    storage->bytes = 0;
+    storage->position = take(storage, vectors);
+    storage->velocity = take(storage, vectors);
+    storage->inverse_mass = take(storage, storage->capacity);
+    storage->previous = world->keep_previous ? take(storage, vectors) : NULL;
+    storage->radius = world->keep_radius ? take(storage, storage->capacity) : NULL;
+    for (int k = 0; k < storage->history_arrays; k++)
+        storage->history[k] = take(storage, vectors);
+    for (int k = 0; k < storage->work_arrays; k++)
+        storage->work[k] = take(storage, work);
+}
+
+/* Copies an array of `rows` components a block. Strides differ only while there is one block. */
+static void copy_array(stf_real *to, const stf_storage *to_storage, const stf_real *from, const stf_storage *from_storage,
+                       size_t rows, size_t count)
+{
+    if (!to || !from)
+        return;
+    if (to_storage->stride == from_storage->stride) {
+        const size_t blocks = (count + from_storage->stride - 1) >> from_storage->shift;
+        memcpy(to, from, blocks * from_storage->stride * rows * sizeof(stf_real));
+        return;
+    }
+    for (size_t row = 0; row < rows; row++)
+        memcpy(to + row * to_storage->stride, from + row * from_storage->stride, count * sizeof(stf_real));
+}
+
+static void copy_storage(stf_storage *to, const stf_storage *from, size_t dimensions, size_t count, bool with_history)
+{
+    copy_array(to->position, to, from->position, from, dimensions, count);
+    copy_array(to->velocity, to, from->velocity, from, dimensions, count);
+    copy_array(to->previous, to, from->previous, from, dimensions, count);
+    copy_array(to->inverse_mass, to, from->inverse_mass, from, 1, count);
+    copy_array(to->radius, to, from->radius, from, 1, count);
+    for (int k = 0; with_history && k < to->history_arrays; k++)
+        copy_array(to->history[k], to, from->history[k], from, dimensions, count);
+}
+
+/* A small world has one small block, so that it does not step hundreds of empty lanes; a large one has whole blocks. */
+static void choose_blocks(stf_storage *storage, size_t capacity)
+{
+    storage->stride = SMALLEST_STRIDE;
+    while (storage->stride < capacity && storage->stride < STF_BLOCK_MAX)
+        storage->stride *= 2;
+    storage->shift = 0;
+    while ((size_t)1 << storage->shift < storage->stride)
+        storage->shift++;
+    storage->capacity = (capacity + storage->stride - 1) / storage->stride * storage->stride;
+    if (storage->capacity == 0)
+        storage->capacity = storage->stride;
+}
+
+stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole)
+{
+    const stf_storage *old = &world->storage;
+
+    if (old->memory && capacity <= old->capacity && integrator->work_arrays <= old->work_arrays &&
+        integrator->history_arrays <= old->history_arrays && whole <= old->whole)
+        return STF_OK;
+    if (capacity > SIZE_MAX / sizeof(stf_real) / ROWS_BOUND - STF_BLOCK_MAX)
+        return STF_ERROR_MEMORY;
+
+    stf_storage new = {.whole = whole || old->whole,
+                       .history_arrays = integrator->history_arrays,
+                       .work_arrays = integrator->work_arrays};
+    choose_blocks(&new, capacity > old->capacity ? capacity : old->capacity);
+    lay_out(&new, world);
+    new.memory = stf_allocator_allocate(&world->allocator, new.bytes);
+    if (!new.memory)
+        return STF_ERROR_MEMORY;
+
+    memset(new.memory, 0, new.bytes);
+    lay_out(&new, world);
+    copy_storage(&new, old, world->dimensions, world->count, integrator == world->integrator);
+    stf_storage_release(world);
+    world->storage = new;
+    return STF_OK;
+}
+
+void stf_storage_release(stf_world *world)
+{
+    stf_allocator_release(&world->allocator, world->storage.memory, world->storage.bytes);
+    world->storage = (stf_storage){0};
+}
+
+stf_particles stf_world_particles(const stf_world *world, size_t first_block, size_t blocks, const stf_real *position,
+                                  const stf_real *velocity, stf_real *force)
+{
+    const size_t stride = world->storage.stride, first = first_block * stride;
+    const size_t left = world->count - first;
+
+    return (stf_particles){
+        .count = left < blocks * stride ? left : blocks * stride,
+        .first = first,
+        .stride = stride,
+        .shift = world->storage.shift,
+        .dimensions = world->dimensions,
+        .position = position,
+        .velocity = velocity,
+        .inverse_mass = world->storage.inverse_mass + first,
+        .force = force,
+    };
+}
+
+stf_result stf_world_reserve(stf_world *world, size_t capacity)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+
+    return stf_storage_require(world, capacity, world->integrator, world->link_count > 0);
+}

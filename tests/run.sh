@@ -1,0 +1,14 @@
+#!/bin/sh
+# tests/run.sh BUILD TEST...: runs every test, and counts.
+build=$1
+shift
+passed=0 failed=0
+
+run() {
+    if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $*"; fi
+}
+
+for test in "$@"; do run "$test"; done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
