@@ -56,7 +56,7 @@ struct stf_system {
 
 enum {
     STF_SYMPLECTIC = 1 << 0, /* for forces of position alone: energy errors stay bounded */
-    STF_REVERSIBLE = 1 << 1  /* for forces of position alone: a step of -dt undoes a step of dt, but for round-off */
+    STF_REVERSIBLE = 1 << 1  /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
 };
 
 typedef struct stf_integrator {

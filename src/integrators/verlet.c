@@ -85,7 +85,7 @@ const stf_integrator stf_position_verlet = {
     .history_arrays = 1,
     .real_stability = 1,
     .imaginary_stability = 2,
-    .flags = STF_SYMPLECTIC | STF_REVERSIBLE,
+    .flags = STF_SYMPLECTIC, /* its positions could be run backwards, but not from the velocity that it reports */
 };
 
 const stf_integrator stf_velocity_verlet = {

@@ -1,0 +1,202 @@
+/* Blocks change no bit: every count, in a block or out of it, alone or together, in one call or in many. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/problem.h"
+
+#define LARGEST 1000
+#define STEP (1.0 / 64)
+#define TICKS 5
+
+static stf_particle random_particle(unsigned dimensions, uint64_t *seed)
+{
+    stf_real c[6] = {0};
+
+    for (unsigned d = 0; d < dimensions; d++) {
+        c[d] = (stf_real)(2 * next_random(seed) - 1);
+        c[3 + d] = (stf_real)(2 * next_random(seed) - 1);
+    }
+    return (stf_particle){.position = {c[0], c[1], c[2]},
+                          .velocity = {c[3], c[4], c[5]},
+                          .inverse_mass = next_random(seed) < 0.1 ? 0 : (stf_real)(0.5 + next_random(seed))};
+}
+
+/* Every kind of field force, and one of time: nothing that ties particles together. */
+static stf_world *field_world(unsigned dimensions, const stf_integrator *integrator, unsigned substeps)
+{
+    stf_world *world = make_world((stf_world_def){.dimensions = dimensions,
+                                                  .integrator = integrator,
+                                                  .step = STEP,
+                                                  .substeps = substeps,
+                                                  .gravity = {-1, 0, 0}});
+
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.5});
+    add_force(world, &stf_force_quadratic_drag, &(stf_quadratic_drag){(stf_real)0.25});
+    add_force(world, &stf_force_attractor, &(stf_attractor){.position = {2, 0, 0}, .strength = 1});
+    add_force(world, &time_force, NULL);
+    return world;
+}
+
+static const size_t counts[] = {0, 1, 2, 15, 16, 17, 31, 32, 33, 63, 64, 65, 127, 128, 129, 255, 256, 257, 383, 384, 385,
+                                511, 512, 513, LARGEST};
+
+static bool same_bits(const stf_world *a, size_t i, const stf_world *b, size_t j)
+{
+    const stf_particle p = particle_of(a, i), q = particle_of(b, j);
+
+    return memcmp(&p.position, &q.position, sizeof p.position) == 0 &&
+           memcmp(&p.velocity, &q.velocity, sizeof p.velocity) == 0;
+}
+
+static void assert_same_particles(const stf_world *a, const stf_world *b)
+{
+    assert_int_equal(stf_world_count(a), stf_world_count(b));
+    for (size_t i = 0; i < stf_world_count(a); i++)
+        assert_true(same_bits(a, i, b, i));
+}
+
+static void a_particle_moves_alike_alone_and_in_every_count(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (int k = 0; stf_integrators[k]; k++) {
+            stf_world *alone[LARGEST];
+            uint64_t seed = 1;
+            stf_particle particles[LARGEST];
+
+            for (size_t i = 0; i < LARGEST; i++) {
+                particles[i] = random_particle(dimensions, &seed);
+                alone[i] = field_world(dimensions, stf_integrators[k], 1);
+                assert_ok(stf_world_add(alone[i], &particles[i], NULL));
+                assert_ok(stf_world_step(alone[i], TICKS));
+            }
+            for (size_t c = 0; c < COUNT_OF(counts); c++) {
+                stf_world *together = field_world(dimensions, stf_integrators[k], 1);
+
+                assert_ok(stf_world_add_many(together, particles, counts[c], NULL));
+                assert_ok(stf_world_step(together, TICKS));
+                for (size_t i = 0; i < counts[c]; i++)
+                    assert_true(same_bits(together, i, alone[i], 0));
+                stf_world_destroy(together);
+            }
+            for (size_t i = 0; i < LARGEST; i++)
+                stf_world_destroy(alone[i]);
+        }
+}
+
+static stf_world *filled_world(const stf_integrator *integrator, size_t count, unsigned substeps)
+{
+    stf_world *world = field_world(3, integrator, substeps);
+    uint64_t seed = 2;
+
+    for (size_t i = 0; i < count; i++) {
+        const stf_particle particle = random_particle(3, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    return world;
+}
+
+static void block_stepping_equals_whole_world_stepping(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++)
+        for (size_t c = 0; c < COUNT_OF(counts); c++)
+            for (unsigned substeps = 1; substeps <= 3; substeps += 2) {
+                stf_world *blocks = filled_world(stf_integrators[k], counts[c], substeps);
+                stf_world *whole = filled_world(stf_integrators[k], counts[c], substeps);
+
+                add_force(whole, &idle_link, NULL);
+                assert_ok(stf_world_step(blocks, TICKS));
+                assert_ok(stf_world_step(whole, TICKS));
+                assert_same_particles(blocks, whole);
+                stf_world_destroy(blocks);
+                stf_world_destroy(whole);
+            }
+}
+
+static void many_ticks_in_one_call_equal_one_tick_in_many(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        stf_world *once = filled_world(stf_integrators[k], 300, 2), *often = filled_world(stf_integrators[k], 300, 2);
+
+        assert_ok(stf_world_step(once, 20));
+        for (int n = 0; n < 20; n++)
+            assert_ok(stf_world_step(often, 1));
+        assert_ok(stf_world_step(often, 0));
+        assert_same_particles(once, often);
+        assert_int_equal(stf_world_ticks(once), stf_world_ticks(often));
+        stf_world_destroy(once);
+        stf_world_destroy(often);
+    }
+}
+
+/* Growing copies particles and history to other memory, with blocks of another width while they are small. */
+static void making_room_changes_no_bit(void **state)
+{
+    (void)state;
+    const size_t rooms[] = {0, 17, 100, 1000, 5000};
+
+    for (int k = 0; stf_integrators[k]; k++)
+        for (size_t r = 0; r < COUNT_OF(rooms); r++) {
+            stf_world *grown = filled_world(stf_integrators[k], 10, 1), *left = filled_world(stf_integrators[k], 10, 1);
+
+            assert_ok(stf_world_step(grown, 3));
+            assert_ok(stf_world_step(left, 3));
+            assert_ok(stf_world_reserve(grown, rooms[r]));
+            assert_ok(stf_world_step(grown, 3));
+            assert_ok(stf_world_step(left, 3));
+            assert_same_particles(grown, left);
+            stf_world_destroy(grown);
+            stf_world_destroy(left);
+        }
+}
+
+/* Bulk and single adds, and a removal that moves the last particle into the gap, end in the same particles. */
+static void ways_of_filling_a_world_are_equal(void **state)
+{
+    (void)state;
+    uint64_t seed = 3;
+    stf_particle particles[LARGEST];
+    stf_world *many = field_world(3, &stf_velocity_verlet, 1), *single = field_world(3, &stf_velocity_verlet, 1);
+    size_t index, moved;
+
+    for (size_t i = 0; i < LARGEST; i++)
+        particles[i] = random_particle(3, &seed);
+    assert_ok(stf_world_add_many(many, particles, LARGEST - 1, &index));
+    assert_int_equal(index, 0);
+
+    for (size_t i = 0; i < LARGEST - 1; i++) {
+        if (i == 500) { /* one too many, whose place the next to come is moved to */
+            assert_ok(stf_world_add(single, &particles[LARGEST - 1], &index));
+            assert_int_equal(index, 500);
+        }
+        assert_ok(stf_world_add(single, &particles[i], &index));
+    }
+    assert_ok(stf_world_remove(single, 500, &moved));
+    assert_int_equal(moved, LARGEST - 1);
+    const stf_particle last = particle_of(single, 500);
+    assert_memory_equal(&last.position, &particles[LARGEST - 2].position, sizeof last.position);
+
+    for (size_t i = 500; i < LARGEST - 1; i++)
+        assert_ok(stf_world_set(single, i, &particles[i]));
+    assert_ok(stf_world_step(many, TICKS));
+    assert_ok(stf_world_step(single, TICKS));
+    assert_same_particles(many, single);
+    stf_world_destroy(many);
+    stf_world_destroy(single);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_particle_moves_alike_alone_and_in_every_count),
+        cmocka_unit_test(block_stepping_equals_whole_world_stepping),
+        cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
+        cmocka_unit_test(making_room_changes_no_bit),
+        cmocka_unit_test(ways_of_filling_a_world_are_equal),
+    };
+
+    return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);
+}

@@ -1,0 +1,470 @@
+/* Every force against its formula in the header, written out again in double; potentials; records that name particles. */
+#include <math.h>
+
+#include "support/check.h"
+
+#define COUNT 300 /* more than a block in both precisions */
+
+/* An integrator that shows accelerations: it puts them where the velocities were. */
+static void show_acceleration(stf_system *system, stf_real dt)
+{
+    (void)dt;
+    system->accelerate(system, system->time, system->position, system->velocity, system->work[0]);
+    for (size_t i = 0; i < system->length; i++)
+        system->velocity[i] = system->work[0][i];
+}
+
+static const stf_integrator peek = {.name = "peek", .step = show_acceleration, .work_arrays = 1};
+
+typedef struct vector {
+    double at[3];
+} vector;
+
+static vector vector_of(stf_vector v) { return (vector){{(double)v.x, (double)v.y, (double)v.z}}; }
+
+static double dot(vector a, vector b) { return a.at[0] * b.at[0] + a.at[1] * b.at[1] + a.at[2] * b.at[2]; }
+
+static vector difference(vector a, vector b)
+{
+    return (vector){{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2]}};
+}
+
+/* A world of random particles, the fifth of them immovable. */
+static stf_world *random_world(unsigned dimensions, size_t count)
+{
+    stf_world *world = make_world((stf_world_def){.dimensions = dimensions, .integrator = &peek, .step = 1});
+    uint64_t seed = dimensions;
+
+    for (size_t i = 0; i < count; i++) {
+        stf_real c[6] = {0};
+        for (unsigned d = 0; d < dimensions; d++) {
+            c[d] = (stf_real)(2 * next_random(&seed) - 1);
+            c[3 + d] = (stf_real)(2 * next_random(&seed) - 1);
+        }
+        const stf_particle particle = {.position = {c[0], c[1], c[2]},
+                                       .velocity = {c[3], c[4], c[5]},
+                                       .inverse_mass = i == 4 ? 0 : (stf_real)(0.5 + next_random(&seed))};
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    return world;
+}
+
+static void copy_particles(const stf_world *world, stf_particle particles[COUNT])
+{
+    for (size_t i = 0; i < stf_world_count(world); i++)
+        particles[i] = particle_of(world, i);
+}
+
+/* Steps the peeking world, and compares every particle's acceleration with force x inverse mass, within `roundings` of `scale`. */
+static void check_forces(stf_world *world, const stf_particle *before, const vector *forces, double scale)
+{
+    assert_ok(stf_world_step(world, 1));
+    for (size_t i = 0; i < stf_world_count(world); i++) {
+        const vector a = vector_of(particle_of(world, i).velocity);
+        for (unsigned d = 0; d < 3; d++)
+            assert_close(a.at[d], forces[i].at[d] * (double)before[i].inverse_mass, scale * REAL_EPSILON);
+    }
+    stf_world_destroy(world);
+}
+
+static void linear_drag_is_minus_k_v(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        vector f[COUNT];
+
+        copy_particles(world, p);
+        add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.75});
+        for (size_t i = 0; i < COUNT; i++)
+            for (int d = 0; d < 3; d++)
+                f[i].at[d] = -0.75 * vector_of(p[i].velocity).at[d];
+        check_forces(world, p, f, 4);
+    }
+}
+
+static void quadratic_drag_is_minus_c_speed_v(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        vector f[COUNT];
+
+        copy_particles(world, p);
+        add_force(world, &stf_force_quadratic_drag, &(stf_quadratic_drag){(stf_real)0.75});
+        for (size_t i = 0; i < COUNT; i++) {
+            const vector v = vector_of(p[i].velocity);
+            for (int d = 0; d < 3; d++)
+                f[i].at[d] = -0.75 * sqrt(dot(v, v)) * v.at[d];
+        }
+        check_forces(world, p, f, 16);
+    }
+}
+
+/* m mu d / (|d|^2 + e^2)^(3/2), towards the centre. */
+static vector attraction(vector x, vector centre, double mass_times_strength, double softening)
+{
+    const vector d = difference(x, centre);
+    const double square = dot(d, d) + softening * softening, factor = mass_times_strength / (square * sqrt(square));
+
+    return (vector){{-factor * d.at[0], -factor * d.at[1], -factor * d.at[2]}};
+}
+
+static void add_to(vector *sum, vector term)
+{
+    for (int d = 0; d < 3; d++)
+        sum->at[d] += term.at[d];
+}
+
+static void attractors_pull_by_the_inverse_square(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        const stf_attractor attractors[2] = {
+            {.position = {2, dimensions > 1 ? 1 : 0, dimensions > 2 ? -1 : 0}, .strength = 3, .softening = (stf_real)0.5},
+            {.position = {-2, 0, 0}, .strength = -2, .softening = (stf_real)0.25}};
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        vector f[COUNT] = {{{0}}};
+
+        copy_particles(world, p);
+        assert_ok(stf_world_add_force(world, &stf_force_attractor, attractors, 2, NULL));
+        for (size_t i = 0; i < COUNT; i++)
+            for (int r = 0; r < 2 && p[i].inverse_mass > 0; r++)
+                add_to(&f[i], attraction(vector_of(p[i].position), vector_of(attractors[r].position),
+                                         (double)attractors[r].strength / (double)p[i].inverse_mass,
+                                         (double)attractors[r].softening));
+        check_forces(world, p, f, 16 * 3 / 0.5); /* up to 3 / distance^2, d = 1 and more, and its relative slope */
+    }
+}
+
+/* (k (l - l0) + c (w . u)) u, from b to a. */
+static vector spring_force(vector d, vector w, double stiffness, double damping, double rest_length)
+{
+    const double length = sqrt(dot(d, d)), along = dot(w, d) / length;
+    const double factor = (stiffness * (length - rest_length) + damping * along) / length;
+
+    return (vector){{-factor * d.at[0], -factor * d.at[1], -factor * d.at[2]}};
+}
+
+static void springs_pull_both_ends_alike(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        stf_spring springs[COUNT];
+        vector f[COUNT] = {{{0}}};
+
+        copy_particles(world, p);
+        for (uint32_t s = 0; s < COUNT; s++) /* far apart in memory, and each particle in two */
+            springs[s] = (stf_spring){
+                .a = s, .b = (s + 137) % COUNT, .stiffness = 2, .damping = (stf_real)0.5, .rest_length = (stf_real)0.25};
+        assert_ok(stf_world_add_force(world, &stf_force_springs, springs, COUNT, NULL));
+        for (uint32_t s = 0; s < COUNT; s++) {
+            const stf_particle *a = &p[springs[s].a], *b = &p[springs[s].b];
+            vector force = spring_force(difference(vector_of(a->position), vector_of(b->position)),
+                                        difference(vector_of(a->velocity), vector_of(b->velocity)), 2, 0.5, 0.25);
+            add_to(&f[springs[s].a], force);
+            for (int d = 0; d < 3; d++)
+                force.at[d] = -force.at[d];
+            add_to(&f[springs[s].b], force);
+        }
+        /* Two forces of at most k 2 sqrt(3) + c 2 sqrt(3), and a direction that is ill-conditioned in near pairs. */
+        check_forces(world, p, f, 2 * 2.5 * 2 * sqrt(3.0) * 8);
+    }
+}
+
+static void anchored_springs_pull_to_their_anchors_in_any_order(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        stf_anchored_spring springs[2 * COUNT];
+        vector f[COUNT] = {{{0}}};
+
+        copy_particles(world, p);
+        for (uint32_t s = 0; s < 2 * COUNT; s++) /* two for each particle, far from sorted */
+            springs[s] = (stf_anchored_spring){.particle = (s * 77) % COUNT,
+                                               .anchor = {s % 2 ? 3 : -3, dimensions > 1 ? 2 : 0, dimensions > 2 ? 1 : 0},
+                                               .stiffness = 2,
+                                               .damping = (stf_real)0.5,
+                                               .rest_length = (stf_real)0.25};
+        assert_ok(stf_world_add_force(world, &stf_force_anchored_springs, springs, 2 * COUNT, NULL));
+        for (uint32_t s = 0; s < 2 * COUNT; s++) {
+            const stf_particle *a = &p[springs[s].particle];
+            add_to(&f[springs[s].particle],
+                   spring_force(difference(vector_of(a->position), vector_of(springs[s].anchor)), vector_of(a->velocity), 2,
+                                0.5, 0.25));
+        }
+        check_forces(world, p, f, 2 * 2.5 * 6 * 8);
+    }
+}
+
+static void all_pairs_gravity_is_the_sum_over_all_others(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        stf_world *world = random_world(dimensions, COUNT);
+        stf_particle p[COUNT];
+        vector f[COUNT] = {{{0}}};
+
+        copy_particles(world, p);
+        add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){(stf_real)0.125, (stf_real)0.5});
+        for (size_t i = 0; i < COUNT; i++)
+            for (size_t j = 0; j < COUNT; j++) {
+                const double product = (double)p[i].inverse_mass * (double)p[j].inverse_mass;
+                if (i != j && product > 0)
+                    add_to(&f[i], attraction(vector_of(p[i].position), vector_of(p[j].position), 0.125 / product, 0.5));
+            }
+        /* 300 terms of at most G m 2 / (3 sqrt(3) e^2) = 0.4 each, rounded as their sum grows. */
+        check_forces(world, p, f, 300 * 0.4 * 8);
+    }
+}
+
+/* Where a formula has no value the force is 0, and the state stays finite. */
+static void coincidence_pulls_nowhere(void **state)
+{
+    (void)state;
+    const stf_particle both = {.position = {1, 2, 3}, .inverse_mass = 1};
+    const stf_spring spring = {.a = 0, .b = 1, .stiffness = 5, .damping = 1, .rest_length = 2};
+    const stf_anchored_spring anchored = {.particle = 0, .anchor = {1, 2, 3}, .stiffness = 5, .damping = 1, .rest_length = 2};
+    const stf_attractor attractor = {.position = {1, 2, 3}, .strength = 9};
+    const stf_all_pairs_gravity gravity = {.gravitational_constant = 1};
+    const stf_force *const forces[] = {&stf_force_springs, &stf_force_anchored_springs, &stf_force_attractor,
+                                       &stf_force_all_pairs_gravity};
+    const void *const records[] = {&spring, &anchored, &attractor, &gravity};
+
+    for (size_t k = 0; k < COUNT_OF(forces); k++) {
+        stf_world *world = make_world((stf_world_def){.integrator = &peek, .step = 1});
+        stf_energy energy;
+
+        assert_ok(stf_world_add(world, &both, NULL));
+        assert_ok(stf_world_add(world, &both, NULL));
+        add_force(world, forces[k], records[k]);
+        assert_ok(stf_world_energy(world, &energy));
+        assert_true(isfinite(energy.potential));
+        assert_ok(stf_world_step(world, 1));
+        for (size_t i = 0; i < 2; i++) {
+            const vector a = vector_of(particle_of(world, i).velocity);
+            assert_true(a.at[0] == 0 && a.at[1] == 0 && a.at[2] == 0);
+        }
+        stf_world_destroy(world);
+    }
+}
+
+/* The forces that the next tests try in turn, on a world of dimension 2. */
+typedef struct example {
+    const stf_force *force;
+    const void *records;
+    size_t count;
+} example;
+
+static const stf_linear_drag linear = {(stf_real)0.5};
+static const stf_quadratic_drag quadratic = {(stf_real)0.5};
+static const stf_attractor attractor_example[] = {{{3, 1, 0}, 2, (stf_real)0.5}};
+static const stf_anchored_spring anchored_example[] = {{2, {2, 2, 0}, 3, (stf_real)0.5, 1}, {0, {0, 2, 0}, 3, 0, 1}};
+static const stf_spring spring_example[] = {{0, 1, 3, (stf_real)0.5, 1}, {1, 2, 3, 0, (stf_real)0.25}};
+static const stf_all_pairs_gravity gravity_example = {2, (stf_real)0.5};
+
+static const example examples[] = {
+    {&stf_force_linear_drag, &linear, 1},          {&stf_force_quadratic_drag, &quadratic, 1},
+    {&stf_force_attractor, attractor_example, 1},  {&stf_force_anchored_springs, anchored_example, 2},
+    {&stf_force_springs, spring_example, 2},       {&stf_force_all_pairs_gravity, &gravity_example, 1},
+};
+
+static stf_world *example_world(const example *e)
+{
+    stf_world *world = random_world(2, 4);
+
+    assert_ok(stf_world_add_force(world, e->force, e->records, e->count, NULL));
+    return world;
+}
+
+static double potential_at(const example *e, size_t particle, int d, double shift)
+{
+    stf_world *world = example_world(e);
+    stf_particle moved = particle_of(world, particle);
+    stf_energy energy;
+
+    *(d == 0 ? &moved.position.x : &moved.position.y) += (stf_real)shift;
+    assert_ok(stf_world_set(world, particle, &moved));
+    assert_ok(stf_world_energy(world, &energy));
+    stf_world_destroy(world);
+    return energy.potential;
+}
+
+/* Central differences err by h^2 and by round-off / h: both are eps^(2/3) at h = eps^(1/3). Third derivatives are up to some 100. */
+static void forces_at_rest_are_minus_the_gradient_of_the_potential(void **state)
+{
+    (void)state;
+    const double h = cbrt(REAL_EPSILON);
+
+    for (size_t k = 0; k < COUNT_OF(examples); k++) {
+        if (!examples[k].force->potential)
+            continue;
+        for (size_t i = 0; i < 4; i++) {
+            stf_world *world = example_world(&examples[k]);
+            for (size_t j = 0; j < 4; j++) {
+                stf_particle rest = particle_of(world, j);
+                rest.velocity = (stf_vector){0, 0, 0};
+                assert_ok(stf_world_set(world, j, &rest));
+            }
+            const double mass = 1 / (double)particle_of(world, i).inverse_mass;
+            assert_ok(stf_world_step(world, 1));
+            const vector a = vector_of(particle_of(world, i).velocity);
+            for (int d = 0; d < 2; d++) {
+                const double slope = (potential_at(&examples[k], i, d, h) - potential_at(&examples[k], i, d, -h)) / (2 * h);
+                assert_close(mass * a.at[d], -slope, 100 * h * h);
+            }
+            stf_world_destroy(world);
+        }
+    }
+}
+
+/* The accelerations of all four particles when position, velocity or time are other than in the example. */
+static void accelerations_with(const example *e, unsigned changed, vector a[4])
+{
+    stf_world *world = example_world(e);
+
+    for (size_t i = 0; i < 4; i++) {
+        stf_particle particle = particle_of(world, i);
+        if (changed & STF_ON_POSITION)
+            particle.position.x += (stf_real)(0.125 * (double)(i + 1));
+        if (changed & STF_ON_VELOCITY)
+            particle.velocity.x += (stf_real)(0.125 * (double)(i + 1));
+        assert_ok(stf_world_set(world, i, &particle));
+    }
+    if (changed & STF_ON_TIME) {
+        assert_ok(stf_world_set_integrator(world, &stf_semi_implicit_euler));
+        stf_particle particles[4];
+        for (size_t i = 0; i < 4; i++)
+            particles[i] = particle_of(world, i);
+        assert_ok(stf_world_step(world, 5));
+        for (size_t i = 0; i < 4; i++)
+            assert_ok(stf_world_set(world, i, &particles[i]));
+        assert_ok(stf_world_set_integrator(world, &peek));
+    }
+    assert_ok(stf_world_step(world, 1));
+    for (size_t i = 0; i < 4; i++)
+        a[i] = vector_of(particle_of(world, i).velocity);
+    stf_world_destroy(world);
+}
+
+static void forces_depend_on_exactly_what_they_say(void **state)
+{
+    (void)state;
+    const unsigned flags[] = {STF_ON_POSITION, STF_ON_VELOCITY, STF_ON_TIME};
+
+    for (size_t k = 0; k < COUNT_OF(examples); k++)
+        for (size_t f = 0; f < COUNT_OF(flags); f++) {
+            vector before[4], after[4];
+            bool changed = false;
+
+            accelerations_with(&examples[k], 0, before);
+            accelerations_with(&examples[k], flags[f], after);
+            for (size_t i = 0; i < 4; i++)
+                changed = changed || before[i].at[0] != after[i].at[0] || before[i].at[1] != after[i].at[1];
+            assert_int_equal(changed, (examples[k].force->depends_on & flags[f]) != 0);
+        }
+}
+
+static void immovable_particles_feel_nothing_not_even_infinity(void **state)
+{
+    (void)state;
+    const stf_particle fixed = {.position = {1, 0, 0}, .velocity = {2, 0, 0}};
+    const stf_attractor at_its_place = {.position = {1, 0, 0}, .strength = REAL_MAX};
+    stf_world *world = make_world((stf_world_def){.gravity = {0, -10, 0}, .step = 0.5, .integrator = &stf_rk4});
+
+    assert_ok(stf_world_add(world, &fixed, NULL));
+    add_force(world, &stf_force_attractor, &at_its_place);
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){REAL_MAX});
+    assert_ok(stf_world_step(world, 4));
+    const stf_particle after = particle_of(world, 0);
+    assert_true(after.position.x == 5 && after.position.y == 0 && after.velocity.x == 2 && after.velocity.y == 0);
+    stf_world_destroy(world);
+}
+
+static void springs_follow_their_particles_when_others_are_removed(void **state)
+{
+    (void)state;
+    stf_world *world = random_world(2, 6);
+    const stf_spring springs[] = {{0, 5, 1, 0, 0}, {1, 2, 2, 0, 0}, {5, 3, 3, 0, 0}, {4, 1, 4, 0, 0}};
+    const stf_anchored_spring anchored[] = {{5, {0, 0, 0}, 1, 0, 0}, {1, {0, 0, 0}, 2, 0, 0}, {0, {0, 0, 0}, 3, 0, 0}};
+    stf_force_id springs_id, anchored_id;
+    size_t moved, count;
+
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, 4, &springs_id));
+    assert_ok(stf_world_add_force(world, &stf_force_anchored_springs, anchored, 3, &anchored_id));
+    const stf_particle last = particle_of(world, 5);
+
+    assert_ok(stf_world_remove(world, 1, &moved));
+    assert_int_equal(moved, 5);
+    assert_memory_equal(&(stf_real[]){particle_of(world, 1).position.x}, &last.position.x, sizeof(stf_real));
+
+    const stf_spring *left = stf_world_force_records(world, springs_id, &count);
+    assert_int_equal(count, 2);
+    assert_true(left[0].a == 0 && left[0].b == 1 && left[0].stiffness == 1);
+    assert_true(left[1].a == 1 && left[1].b == 3 && left[1].stiffness == 3);
+
+    const stf_anchored_spring *held = stf_world_force_records(world, anchored_id, &count);
+    assert_int_equal(count, 2);
+    assert_true(held[0].particle == 0 && held[0].stiffness == 3);
+    assert_true(held[1].particle == 1 && held[1].stiffness == 1);
+
+    assert_ok(stf_world_remove(world, 4, &moved)); /* the last: nobody moves */
+    assert_int_equal(moved, 4);
+    assert_non_null(stf_world_force_records(world, springs_id, &count));
+    assert_int_equal(count, 2);
+    assert_ok(stf_world_step(world, 1));
+
+    assert_ok(stf_world_clear(world));
+    assert_null(stf_world_force_records(world, springs_id, &count));
+    assert_int_equal(count, 0);
+    assert_ok(stf_world_step(world, 1));
+    stf_world_destroy(world);
+}
+
+static void link_forces_keep_momentum(void **state)
+{
+    (void)state;
+    for (size_t k = 4; k < 6; k++) {
+        stf_world *world = make_world((stf_world_def){.dimensions = 2, .integrator = &stf_rk4, .step = 1.0 / 64});
+        double before[3], after[3];
+
+        for (int i = 0; i < 4; i++)
+            assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, (stf_real)(i * i) / 4, 0},
+                                                           .velocity = {1, (stf_real)-i, 0},
+                                                           .inverse_mass = 1 / (stf_real)(i + 1)}, NULL));
+        assert_ok(stf_world_add_force(world, examples[k].force, examples[k].records, examples[k].count, NULL));
+        assert_ok(stf_world_momentum(world, before));
+        assert_ok(stf_world_step(world, 100));
+        assert_ok(stf_world_momentum(world, after));
+        for (int d = 0; d < 3; d++) /* 400 evaluations, each rounding forces of up to some 10 N over 1/64 s */
+            assert_close(after[d], before[d], 400 * 10 / 64.0 * REAL_EPSILON);
+        stf_world_destroy(world);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_drag_is_minus_k_v),
+        cmocka_unit_test(quadratic_drag_is_minus_c_speed_v),
+        cmocka_unit_test(attractors_pull_by_the_inverse_square),
+        cmocka_unit_test(springs_pull_both_ends_alike),
+        cmocka_unit_test(anchored_springs_pull_to_their_anchors_in_any_order),
+        cmocka_unit_test(all_pairs_gravity_is_the_sum_over_all_others),
+        cmocka_unit_test(coincidence_pulls_nowhere),
+        cmocka_unit_test(forces_at_rest_are_minus_the_gradient_of_the_potential),
+        cmocka_unit_test(forces_depend_on_exactly_what_they_say),
+        cmocka_unit_test(immovable_particles_feel_nothing_not_even_infinity),
+        cmocka_unit_test(springs_follow_their_particles_when_others_are_removed),
+        cmocka_unit_test(link_forces_keep_momentum),
+    };
+
+    return cmocka_run_group_tests_name("force, " REAL_NAME, tests, NULL, NULL);
+}

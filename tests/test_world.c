@@ -1,0 +1,753 @@
+/* What a world promises: refusals that change nothing, memory, time, blending, energy, what it says about itself. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scenes/scene.h"
+#include "support/check.h"
+#include "support/problem.h"
+
+static const stf_real not_a_number = (stf_real)NAN, infinite = (stf_real)INFINITY;
+
+/* A world with some of everything: particles, both kinds of springs, gravity, drag; half way through a run. */
+static stf_world *busy_world(const stf_allocator *allocator)
+{
+    stf_world_def def = {.dimensions = 2, .integrator = &stf_velocity_verlet, .step = 1.0 / 64, .gravity = {0, -1, 0}};
+    const stf_spring spring = {.a = 0, .b = 2, .stiffness = 1, .damping = (stf_real)0.25, .rest_length = 1};
+    const stf_anchored_spring anchored = {.particle = 1, .stiffness = 1};
+    const stf_linear_drag drag = {(stf_real)0.125};
+
+    if (allocator)
+        def.allocator = *allocator;
+    def.keep_previous = def.keep_radius = true;
+
+    stf_world *world = make_world(def);
+    for (int i = 0; i < 3; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 1, 0},
+                                                       .velocity = {0, (stf_real)i, 0},
+                                                       .inverse_mass = 1,
+                                                       .radius = (stf_real)0.5}, NULL));
+    add_force(world, &stf_force_springs, &spring);
+    add_force(world, &stf_force_anchored_springs, &anchored);
+    add_force(world, &stf_force_linear_drag, &drag);
+    assert_ok(stf_world_step(world, 10));
+    return world;
+}
+
+static void bad_defs_are_refused(void **state)
+{
+    (void)state;
+    static const stf_integrator nameless = {.step = NULL, .name = "no step"};
+    const stf_integrator greedy = {.name = "greedy", .step = stf_rk4.step, .work_arrays = STF_WORK_ARRAYS_MAX + 1};
+    const stf_integrator mindful = {.name = "mindful", .step = stf_rk4.step, .history_arrays = STF_HISTORY_ARRAYS_MAX + 1};
+    const stf_integrator negative = {.name = "negative", .step = stf_rk4.step, .work_arrays = -1};
+    const struct {
+        stf_world_def def;
+        stf_result expected;
+    } cases[] = {
+        {{.dimensions = 4}, STF_ERROR_DIMENSIONS},
+        {{.step = -1}, STF_ERROR_STEP},
+        {{.step = (double)NAN}, STF_ERROR_STEP},
+        {{.step = (double)INFINITY}, STF_ERROR_STEP},
+        {{.step = DBL_MIN, .substeps = 2}, STF_ERROR_STEP},
+        {{.step = (double)REAL_MAX / 2, .substeps = 1, .gravity = {infinite, 0, 0}}, STF_ERROR_NOT_FINITE},
+        {{.gravity = {0, not_a_number, 0}}, STF_ERROR_NOT_FINITE},
+        {{.dimensions = 2, .gravity = {0, 0, -1}}, STF_ERROR_DIMENSIONS},
+        {{.dimensions = 1, .gravity = {0, -1, 0}}, STF_ERROR_DIMENSIONS},
+        {{.integrator = &nameless}, STF_ERROR_DESCRIPTOR},
+        {{.integrator = &greedy}, STF_ERROR_DESCRIPTOR},
+        {{.integrator = &mindful}, STF_ERROR_DESCRIPTOR},
+        {{.integrator = &negative}, STF_ERROR_DESCRIPTOR},
+        {{.capacity = SIZE_MAX}, STF_ERROR_MEMORY},
+        {{.capacity = SIZE_MAX / sizeof(stf_real) / 32}, STF_ERROR_MEMORY}, /* its bytes would wrap round */
+    };
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        stf_world *world = NULL;
+        assert_refused(stf_world_create(&cases[i].def, &world), cases[i].expected);
+        assert_null(world);
+    }
+    stf_world *world = NULL;
+    assert_refused(stf_world_create(NULL, &world), STF_ERROR_NULL);
+    assert_refused(stf_world_create(&(stf_world_def){0}, NULL), STF_ERROR_NULL);
+    stf_world_destroy(NULL);
+}
+
+static void bad_particles_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    const stf_particle good = {.position = {1, 1, 0}, .inverse_mass = 1};
+    const struct {
+        stf_particle particle;
+        stf_result expected;
+    } cases[] = {
+        {{.position = {not_a_number, 0, 0}}, STF_ERROR_NOT_FINITE},
+        {{.position = {0, infinite, 0}}, STF_ERROR_NOT_FINITE},
+        {{.position = {0, 0, not_a_number}}, STF_ERROR_NOT_FINITE},
+        {{.velocity = {0, -infinite, 0}}, STF_ERROR_NOT_FINITE},
+        {{.position = {0, 0, 1}}, STF_ERROR_DIMENSIONS},
+        {{.velocity = {0, 0, -1}}, STF_ERROR_DIMENSIONS},
+        {{.inverse_mass = -1}, STF_ERROR_MASS},
+        {{.inverse_mass = not_a_number}, STF_ERROR_MASS},
+        {{.inverse_mass = infinite}, STF_ERROR_MASS},
+        {{.inverse_mass = 1 / REAL_MAX / 2}, STF_ERROR_MASS},
+        {{.inverse_mass = 1, .radius = -1}, STF_ERROR_RADIUS},
+        {{.inverse_mass = 1, .radius = not_a_number}, STF_ERROR_RADIUS},
+        {{.inverse_mass = 1, .radius = infinite}, STF_ERROR_RADIUS},
+    };
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        const stf_particle pair[] = {good, cases[i].particle};
+        size_t index = 77;
+
+        assert_refused(stf_world_add(world, &cases[i].particle, &index), cases[i].expected);
+        assert_refused(stf_world_add_many(world, pair, 2, &index), cases[i].expected);
+        assert_refused(stf_world_set(world, 1, &cases[i].particle), cases[i].expected);
+        assert_int_equal(index, 77);
+        assert_true(hash_of(world) == before);
+    }
+    stf_world *without_radius = make_world((stf_world_def){0});
+    assert_refused(stf_world_add(without_radius, &(stf_particle){.radius = 1}, NULL), STF_ERROR_RADIUS);
+    stf_world_destroy(without_radius);
+    stf_world_destroy(world);
+}
+
+static void missing_particles_pointers_and_forces_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+    stf_particle particle = {.inverse_mass = 1};
+    double momentum[3];
+    stf_energy energy;
+    float vertices[6];
+    size_t count = 7;
+
+    assert_refused(stf_world_get(world, 3, &particle), STF_ERROR_PARTICLE);
+    assert_refused(stf_world_set(world, 3, &particle), STF_ERROR_PARTICLE);
+    assert_refused(stf_world_set(world, SIZE_MAX, &particle), STF_ERROR_PARTICLE);
+    assert_refused(stf_world_remove(world, 3, NULL), STF_ERROR_PARTICLE);
+
+    assert_refused(stf_world_add(world, NULL, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_add_many(world, NULL, 1, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_get(world, 0, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_set(world, 0, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_set_integrator(world, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_energy(world, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_momentum(world, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_copy_positions(world, 1, NULL, 0), STF_ERROR_NULL);
+    assert_refused(stf_world_add_force(world, NULL, NULL, 0, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_add_force(world, &stf_force_linear_drag, NULL, 1, NULL), STF_ERROR_NULL);
+
+    assert_refused(stf_world_add(NULL, &particle, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_add_many(NULL, &particle, 1, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_get(NULL, 0, &particle), STF_ERROR_NULL);
+    assert_refused(stf_world_set(NULL, 0, &particle), STF_ERROR_NULL);
+    assert_refused(stf_world_remove(NULL, 0, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_clear(NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_reserve(NULL, 1), STF_ERROR_NULL);
+    assert_refused(stf_world_step(NULL, 1), STF_ERROR_NULL);
+    assert_refused(stf_world_set_step(NULL, 1), STF_ERROR_NULL);
+    assert_refused(stf_world_set_substeps(NULL, 1), STF_ERROR_NULL);
+    assert_refused(stf_world_set_gravity(NULL, (stf_vector){0, 0, 0}), STF_ERROR_NULL);
+    assert_refused(stf_world_set_integrator(NULL, &stf_rk4), STF_ERROR_NULL);
+    assert_refused(stf_world_energy(NULL, &energy), STF_ERROR_NULL);
+    assert_refused(stf_world_momentum(NULL, momentum), STF_ERROR_NULL);
+    assert_refused(stf_world_copy_positions(NULL, 1, vertices, 0), STF_ERROR_NULL);
+    assert_refused(stf_world_add_force(NULL, &stf_force_linear_drag, NULL, 0, NULL), STF_ERROR_NULL);
+    assert_refused(stf_world_set_force(NULL, 1, NULL, 0), STF_ERROR_NULL);
+    assert_refused(stf_world_remove_force(NULL, 1), STF_ERROR_NULL);
+
+    assert_refused(stf_world_set_force(world, 0, NULL, 0), STF_ERROR_FORCE);
+    assert_refused(stf_world_set_force(world, 4, NULL, 0), STF_ERROR_FORCE);
+    assert_refused(stf_world_remove_force(world, 4), STF_ERROR_FORCE);
+    assert_null(stf_world_force_records(world, 4, &count));
+    assert_int_equal(count, 0);
+    assert_null(stf_world_force(world, 4));
+    assert_int_equal(stf_world_force_at(world, 3), 0);
+    assert_true(hash_of(world) == before);
+
+    assert_int_equal(stf_world_count(NULL), 0);
+    assert_int_equal(stf_world_ticks(NULL), 0);
+    assert_true(stf_world_time(NULL) == 0 && stf_world_step_size(NULL) == 0 && stf_world_gravity(NULL).y == 0);
+    assert_int_equal(stf_world_substeps(NULL), 0);
+    assert_int_equal(stf_world_dimensions(NULL), 0);
+    assert_null(stf_world_integrator(NULL));
+    assert_null(stf_world_force(NULL, 1));
+    assert_int_equal(stf_world_force_at(NULL, 0), 0);
+    assert_false(stf_world_find_non_finite(NULL, NULL));
+    stf_world_destroy(world);
+}
+
+static void bad_settings_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+    const stf_integrator stepless = {.name = "stepless"};
+    const double bad_steps[] = {0, -1, (double)NAN, (double)INFINITY, DBL_MIN / 4};
+    const double bad_alphas[] = {-0.001, 1.001, (double)NAN};
+    float vertices[6];
+
+    for (size_t i = 0; i < COUNT_OF(bad_steps); i++)
+        assert_refused(stf_world_set_step(world, bad_steps[i]), STF_ERROR_STEP);
+#ifndef STF_DOUBLE
+    assert_refused(stf_world_set_step(world, 1e39), STF_ERROR_STEP); /* not a float */
+    assert_refused(stf_world_set_step(world, 1e-39), STF_ERROR_STEP);
+#endif
+    assert_refused(stf_world_set_substeps(world, 0), STF_ERROR_SUBSTEPS);
+    assert_refused(stf_world_set_gravity(world, (stf_vector){not_a_number, 0, 0}), STF_ERROR_NOT_FINITE);
+    assert_refused(stf_world_set_gravity(world, (stf_vector){0, 0, 1}), STF_ERROR_DIMENSIONS);
+    assert_refused(stf_world_set_integrator(world, &stepless), STF_ERROR_DESCRIPTOR);
+    for (size_t i = 0; i < COUNT_OF(bad_alphas); i++)
+        assert_refused(stf_world_copy_positions(world, bad_alphas[i], vertices, 0), STF_ERROR_ALPHA);
+    assert_true(hash_of(world) == before);
+    stf_world_destroy(world);
+}
+
+static void bad_forces_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    const stf_force no_apply = {.name = "no apply"}, no_name = {.apply = stf_force_linear_drag.apply};
+    const stf_force no_kind = {.name = "no kind", .apply = stf_force_linear_drag.apply, .kind = (stf_force_kind)2};
+    const stf_linear_drag negative_linear = {-1}, nan_linear = {not_a_number};
+    const stf_quadratic_drag negative_quadratic = {-1}, infinite_quadratic = {infinite};
+    const stf_attractor attractors[] = {{{not_a_number, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{0, 0, 0}, infinite, 0},
+                                        {{0, 0, 0}, 1, -1}};
+    const stf_spring springs[] = {{0, 3, 1, 0, 0}, {3, 0, 1, 0, 0}, {1, 1, 1, 0, 0}, {0, 1, -1, 0, 0}, {0, 1, 1, -1, 0},
+                                  {0, 1, 1, 0, -1}, {0, 1, not_a_number, 0, 0}};
+    const stf_anchored_spring anchored[] = {{3, {0, 0, 0}, 1, 0, 0}, {0, {infinite, 0, 0}, 1, 0, 0}, {0, {0, 0, 1}, 1, 0, 0},
+                                            {0, {0, 0, 0}, -1, 0, 0}, {0, {0, 0, 0}, 1, infinite, 0}};
+    const stf_all_pairs_gravity gravity[] = {{infinite, 0}, {1, -1}};
+    const struct {
+        const stf_force *force;
+        const void *record;
+        stf_result expected;
+    } cases[] = {
+        {&no_apply, NULL, STF_ERROR_DESCRIPTOR},
+        {&no_name, NULL, STF_ERROR_DESCRIPTOR},
+        {&no_kind, NULL, STF_ERROR_DESCRIPTOR},
+        {&idle_link, &negative_linear, STF_ERROR_PARAMETERS}, /* it has no parameters */
+        {&stf_force_linear_drag, &negative_linear, STF_ERROR_PARAMETERS},
+        {&stf_force_linear_drag, &nan_linear, STF_ERROR_PARAMETERS},
+        {&stf_force_quadratic_drag, &negative_quadratic, STF_ERROR_PARAMETERS},
+        {&stf_force_quadratic_drag, &infinite_quadratic, STF_ERROR_PARAMETERS},
+        {&stf_force_attractor, &attractors[0], STF_ERROR_NOT_FINITE},
+        {&stf_force_attractor, &attractors[1], STF_ERROR_DIMENSIONS},
+        {&stf_force_attractor, &attractors[2], STF_ERROR_PARAMETERS},
+        {&stf_force_attractor, &attractors[3], STF_ERROR_PARAMETERS},
+        {&stf_force_springs, &springs[0], STF_ERROR_PARTICLE},
+        {&stf_force_springs, &springs[1], STF_ERROR_PARTICLE},
+        {&stf_force_springs, &springs[2], STF_ERROR_PARAMETERS},
+        {&stf_force_springs, &springs[3], STF_ERROR_PARAMETERS},
+        {&stf_force_springs, &springs[4], STF_ERROR_PARAMETERS},
+        {&stf_force_springs, &springs[5], STF_ERROR_PARAMETERS},
+        {&stf_force_springs, &springs[6], STF_ERROR_PARAMETERS},
+        {&stf_force_anchored_springs, &anchored[0], STF_ERROR_PARTICLE},
+        {&stf_force_anchored_springs, &anchored[1], STF_ERROR_NOT_FINITE},
+        {&stf_force_anchored_springs, &anchored[2], STF_ERROR_DIMENSIONS},
+        {&stf_force_anchored_springs, &anchored[3], STF_ERROR_PARAMETERS},
+        {&stf_force_anchored_springs, &anchored[4], STF_ERROR_PARAMETERS},
+        {&stf_force_all_pairs_gravity, &gravity[0], STF_ERROR_PARAMETERS},
+        {&stf_force_all_pairs_gravity, &gravity[1], STF_ERROR_PARAMETERS},
+    };
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        stf_force_id id = 77;
+        assert_refused(stf_world_add_force(world, cases[i].force, cases[i].record, cases[i].record ? 1 : 0, &id),
+                       cases[i].expected);
+        assert_int_equal(id, 77);
+        assert_true(hash_of(world) == before);
+    }
+    assert_refused(stf_world_set_force(world, 1, &springs[0], 1), STF_ERROR_PARTICLE);
+    assert_refused(stf_world_set_force(world, 3, &negative_linear, 1), STF_ERROR_PARAMETERS);
+    assert_true(hash_of(world) == before);
+    stf_world_destroy(world);
+}
+
+static void every_result_has_its_own_text(void **state)
+{
+    (void)state;
+    for (int i = 0; i < STF_RESULT_COUNT; i++) {
+        assert_non_null(stf_result_text((stf_result)i));
+        for (int j = 0; j < i; j++)
+            assert_string_not_equal(stf_result_text((stf_result)i), stf_result_text((stf_result)j));
+    }
+    assert_non_null(stf_result_text((stf_result)-1));
+    assert_non_null(stf_result_text(STF_RESULT_COUNT));
+
+    char version[32];
+    snprintf(version, sizeof version, "%d.%d.%d", STF_VERSION_MAJOR, STF_VERSION_MINOR, STF_VERSION_PATCH);
+    assert_string_equal(stf_version(), version);
+}
+
+/* An allocator that counts what is out, checks sizes and alignment, and fails on demand. */
+typedef struct counting {
+    size_t blocks, bytes, calls;
+    size_t fail_at; /* this call returns NULL; 0: none */
+} counting;
+
+#define HEADER 64 /* keeps malloc's alignment of 16 at least, up to the 64 that is asked for */
+
+static void *count_allocate(void *user, size_t size, size_t alignment)
+{
+    counting *c = user;
+
+    assert_int_equal(alignment, 64);
+    if (++c->calls == c->fail_at)
+        return NULL;
+    unsigned char *taken = malloc(size + alignment + HEADER);
+    assert_non_null(taken);
+    unsigned char *aligned = taken + HEADER + (alignment - ((uintptr_t)taken + HEADER) % alignment) % alignment;
+    memcpy(aligned - sizeof taken, &taken, sizeof taken);
+    c->blocks++;
+    c->bytes += size;
+    memset(aligned, 0xa5, size); /* nobody may rely on zeros */
+    return aligned;
+}
+
+static void count_release(void *user, void *memory, size_t size)
+{
+    counting *c = user;
+    unsigned char *taken;
+
+    assert_non_null(memory);
+    memcpy(&taken, (unsigned char *)memory - sizeof taken, sizeof taken);
+    free(taken);
+    c->blocks--;
+    c->bytes -= size;
+}
+
+static stf_allocator counting_allocator(counting *c)
+{
+    return (stf_allocator){.allocate = count_allocate, .release = count_release, .user = c};
+}
+
+static void all_memory_comes_from_the_allocator_and_goes_back(void **state)
+{
+    (void)state;
+    counting c = {0};
+    const stf_allocator allocator = counting_allocator(&c);
+    stf_world *world = busy_world(&allocator);
+
+    assert_true(c.blocks > 0 && c.bytes > 0);
+    stf_world_destroy(world);
+    assert_int_equal(c.blocks, 0);
+    assert_int_equal(c.bytes, 0);
+
+    stf_world *none = NULL;
+    const stf_world_def half = {.allocator = {.allocate = count_allocate, .user = &c}};
+    assert_refused(stf_world_create(&half, &none), STF_ERROR_DESCRIPTOR);
+    assert_null(none);
+}
+
+static void steps_and_questions_allocate_nothing(void **state)
+{
+    (void)state;
+    counting c = {0};
+    const stf_allocator allocator = counting_allocator(&c);
+    stf_world *world = busy_world(&allocator);
+    const size_t calls = c.calls;
+    stf_energy energy;
+    double momentum[3];
+    float vertices[6];
+    char text[2048];
+
+    for (int k = 0; k < 3; k++) {
+        assert_ok(stf_world_step(world, 5));
+        assert_ok(stf_world_energy(world, &energy));
+        assert_ok(stf_world_momentum(world, momentum));
+        assert_ok(stf_world_copy_positions(world, 0.5, vertices, 0));
+        stf_world_describe(world, text, sizeof text);
+        stf_world_find_non_finite(world, NULL);
+        assert_ok(stf_world_set_step(world, 0.01 * (k + 1)));
+        assert_ok(stf_world_remove(world, 0, NULL));
+    }
+    assert_int_equal(c.calls, calls);
+    stf_world_destroy(world);
+}
+
+/* Calls that need memory, each on a busy world. */
+static stf_result grow(stf_world *world) { return stf_world_reserve(world, 5000); }
+
+static stf_result add_many(stf_world *world)
+{
+    static const stf_particle particles[20];
+    return stf_world_add_many(world, particles, COUNT_OF(particles), NULL);
+}
+
+static stf_result add_to_full(stf_world *world)
+{
+    stf_result result = STF_OK;
+    for (int i = 0; i < 13 && !result; i++) /* 16 fill the first block */
+        result = stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
+    return result ? result : stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
+}
+
+static stf_result use_rk4(stf_world *world) { return stf_world_set_integrator(world, &stf_rk4); }
+
+static stf_result add_attractor(stf_world *world)
+{
+    return stf_world_add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1}, 1, NULL);
+}
+
+static stf_result change_springs(stf_world *world)
+{
+    const stf_spring springs[] = {{0, 1, 1, 0, 0}, {1, 2, 1, 0, 0}};
+    return stf_world_set_force(world, 1, springs, 2);
+}
+
+static stf_result add_nine_forces(stf_world *world)
+{
+    stf_result result = STF_OK;
+    for (int i = 0; i < 9 && !result; i++)
+        result = stf_world_add_force(world, &time_force, NULL, 0, NULL);
+    return result;
+}
+
+static stf_result tie(stf_world *world)
+{
+    stf_result result = stf_world_remove_force(world, 1);
+    return result ? result : stf_world_add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){1, 1}, 1, NULL);
+}
+
+static void without_memory_calls_fail_and_change_nothing_they_did_not_do(void **state)
+{
+    (void)state;
+    static const struct {
+        stf_result (*call)(stf_world *);
+        bool one_step; /* does nothing else before what needs memory */
+    } calls[] = {{grow, true}, {add_many, true}, {add_to_full, false}, {use_rk4, true}, {add_attractor, true},
+                 {change_springs, true}, {add_nine_forces, false}, {tie, false}};
+
+    for (size_t k = 0; k < COUNT_OF(calls); k++)
+        for (size_t n = 1;; n++) {
+            counting c = {0};
+            const stf_allocator allocator = counting_allocator(&c);
+            stf_world *world = busy_world(&allocator);
+            const uint64_t before = hash_of(world);
+
+            c.fail_at = c.calls + n;
+            const stf_result result = calls[k].call(world);
+            const bool failed = c.calls >= c.fail_at;
+            assert_refused(result, failed ? STF_ERROR_MEMORY : STF_OK);
+            if (failed && calls[k].one_step)
+                assert_true(hash_of(world) == before);
+            assert_ok(stf_world_step(world, 3));
+            stf_world_destroy(world);
+            assert_int_equal(c.blocks, 0);
+            assert_int_equal(c.bytes, 0);
+            if (!failed) {
+                assert_true(n > 1); /* at least one allocation was there to fail */
+                break;
+            }
+        }
+}
+
+static void without_memory_no_world_is_made(void **state)
+{
+    (void)state;
+    for (size_t n = 1; n <= 2; n++) {
+        counting c = {.fail_at = n};
+        const stf_world_def def = {.capacity = 1000, .allocator = counting_allocator(&c)};
+        stf_world *world = NULL;
+
+        assert_refused(stf_world_create(&def, &world), STF_ERROR_MEMORY);
+        assert_null(world);
+        assert_int_equal(c.blocks, 0);
+    }
+}
+
+static void time_is_ticks_times_step(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 0.1, .substeps = 3});
+
+    for (unsigned n = 1; n <= 1000; n++) {
+        assert_ok(stf_world_step(world, 1000));
+        assert_int_equal(stf_world_ticks(world), 1000 * n);
+        assert_true(stf_world_time(world) == 1000 * n * 0.1);
+    }
+    const double before = stf_world_time(world);
+    assert_ok(stf_world_set_step(world, 0.25));
+    assert_true(stf_world_time(world) == before);
+    assert_ok(stf_world_step(world, 4));
+    assert_true(stf_world_time(world) == before + 1);
+    assert_int_equal(stf_world_ticks(world), 1000004);
+    stf_world_destroy(world);
+}
+
+/* Records the times that it is asked for. */
+#define TIMES 64
+static void note_time(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    double *const *times = records;
+    (void)record_count, (void)particles;
+    times[0][1 + (size_t)times[0][0]] = time;
+    times[0][0]++;
+}
+
+static void forces_see_the_time_of_their_stage(void **state)
+{
+    (void)state;
+    static const stf_force noter = {.name = "noter", .record_size = sizeof(double *), .apply = note_time};
+    const double expected[] = {0, 0.125, 0.125, 0.25, 0.25, 0.375, 0.375, 0.5, 0.5, 0.625, 0.625, 0.75, 0.75, 0.875, 0.875, 1};
+    double times[TIMES] = {0}, *at = times;
+    stf_world *world = make_world((stf_world_def){.integrator = &stf_rk4, .step = 0.5, .substeps = 2});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &noter, &at);
+    assert_ok(stf_world_step(world, 2));
+    assert_true(times[0] == COUNT_OF(expected));
+    for (size_t i = 0; i < COUNT_OF(expected); i++)
+        assert_true(times[1 + i] == expected[i]);
+    stf_world_destroy(world);
+}
+
+static void positions_are_copied_out_blended_and_strided(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 2, .step = 0.5, .keep_previous = true});
+    float packed[2 * 300];
+    struct vertex {
+        float colour, xy[2];
+        double more;
+    } vertices[300];
+
+    for (int i = 0; i < 300; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 0, 0}, .velocity = {2, 4, 0}}, NULL));
+    assert_ok(stf_world_copy_positions(world, 0, packed, 0));
+    assert_true(packed[2 * 299] == 299.0f); /* nothing has moved yet */
+
+    assert_ok(stf_world_step(world, 3)); /* previous: 2 ticks, x + 2, y + 4; now: x + 3, y + 6 */
+    const double alphas[] = {0, 0.25, 0.5, 1};
+    for (size_t k = 0; k < COUNT_OF(alphas); k++) {
+        memset(vertices, 0, sizeof vertices);
+        assert_ok(stf_world_copy_positions(world, alphas[k], packed, 0));
+        assert_ok(stf_world_copy_positions(world, alphas[k], vertices[0].xy, sizeof vertices[0]));
+        for (int i = 0; i < 300; i++) { /* small whole numbers and quarters: exact */
+            assert_true(packed[2 * i] == (float)(i + 2 + alphas[k]));
+            assert_true(packed[2 * i + 1] == (float)(4 + 2 * alphas[k]));
+            assert_memory_equal(vertices[i].xy, &packed[2 * i], sizeof vertices[i].xy);
+            assert_true(vertices[i].colour == 0 && vertices[i].more == 0);
+        }
+    }
+
+    /* A teleport is not blended; what moved into a gap keeps its own past. */
+    assert_ok(stf_world_set(world, 7, &(stf_particle){.position = {-9, 8, 0}}));
+    assert_ok(stf_world_remove(world, 5, NULL));
+    assert_ok(stf_world_copy_positions(world, 0.5, packed, 0));
+    assert_true(packed[2 * 7] == -9 && packed[2 * 7 + 1] == 8);
+    assert_true(packed[2 * 5] == 299 + 2.5f && packed[2 * 5 + 1] == 5);
+
+    stf_world *forgetful = make_world((stf_world_def){0});
+    assert_refused(stf_world_copy_positions(forgetful, 0.5, packed, 0), STF_ERROR_NO_PREVIOUS);
+    assert_ok(stf_world_copy_positions(forgetful, 1, NULL, 0)); /* no particles, no buffer */
+    stf_world_destroy(forgetful);
+    stf_world_destroy(world);
+}
+
+static void energy_and_momentum_are_their_sums(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.gravity = {0, -2, 1}});
+    stf_energy energy;
+    double momentum[3];
+
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 3, 5}, .velocity = {1, -2, 3}, .inverse_mass = 0.5}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {9, 1, 2}, .velocity = {0, 4, 0}, .inverse_mass = 0.25}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {9, 9, 9}, .velocity = {9, 9, 9}}, NULL)); /* immovable */
+    assert_ok(stf_world_energy(world, &energy));
+    assert_ok(stf_world_momentum(world, momentum));
+    assert_true(energy.kinetic == 2 * 14 / 2.0 + 4 * 16 / 2.0);
+    assert_true(energy.potential == 2 * (2 * 3 - 5) + 4 * (2 * 1 - 2));
+    assert_true(momentum[0] == 2 && momentum[1] == -4 + 16 && momentum[2] == 6);
+    stf_world_destroy(world);
+}
+
+static void the_first_non_finite_particle_is_found(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 3, .step = 1});
+    size_t index = 77;
+
+    for (int i = 0; i < 300; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {0, 1, 0}, .inverse_mass = 1}, NULL));
+    assert_ok(stf_world_step(world, 1));
+    assert_false(stf_world_find_non_finite(world, &index));
+    assert_int_equal(index, 77);
+
+    const size_t runaways[] = {299, 257, 256, 1};
+    for (size_t k = 0; k < COUNT_OF(runaways); k++) {
+        /* Two steps at the largest speed overflow the position. */
+        assert_ok(stf_world_set(world, runaways[k], &(stf_particle){.velocity = {0, 0, REAL_MAX}, .inverse_mass = 1}));
+        assert_ok(stf_world_step(world, 2));
+        assert_true(stf_world_find_non_finite(world, &index));
+        assert_int_equal(index, runaways[k]);
+        assert_true(stf_world_find_non_finite(world, NULL));
+    }
+    stf_world_destroy(world);
+}
+
+static void a_zeroed_def_is_the_documented_world(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){0});
+
+    assert_int_equal(stf_world_dimensions(world), 3);
+    assert_ptr_equal(stf_world_integrator(world), &stf_semi_implicit_euler);
+    assert_true(stf_world_step_size(world) == 1.0 / 60);
+    assert_int_equal(stf_world_substeps(world), 1);
+    assert_int_equal(stf_world_count(world), 0);
+    assert_int_equal(stf_world_ticks(world), 0);
+    assert_ok(stf_world_step(world, 3)); /* an empty world steps */
+    assert_int_equal(stf_world_ticks(world), 3);
+    stf_world_destroy(world);
+}
+
+static void describe_names_what_there_is_and_cuts_cleanly(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    char text[4096], piece[4096];
+    const size_t length = stf_world_describe(world, text, sizeof text);
+    const char *const expected[] = {"2 dimensions", REAL_NAME, "3 particles", "velocity_verlet", "springs", "anchored_springs",
+                                    "linear_drag", "previous position", "radius", "bytes a particle", "passes a tick"};
+
+    assert_int_equal(length, strlen(text));
+    for (size_t i = 0; i < COUNT_OF(expected); i++)
+        assert_non_null(strstr(text, expected[i]));
+    for (size_t size = 1; size < length + 3; size++) {
+        memset(piece, 'x', sizeof piece);
+        assert_int_equal(stf_world_describe(world, piece, size), length);
+        assert_int_equal(strlen(piece), size <= length ? size - 1 : length);
+        assert_memory_equal(piece, text, size <= length ? size - 1 : length);
+        assert_int_equal(piece[size], 'x');
+    }
+    assert_int_equal(stf_world_describe(world, NULL, 0), length);
+    assert_int_equal(stf_world_describe(NULL, text, sizeof text), 0);
+    assert_string_equal(text, "");
+    stf_world_destroy(world);
+}
+
+static void forces_keep_their_ids(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){0});
+    stf_force_id ids[20], again;
+    size_t count;
+
+    for (uint32_t i = 0; i < 20; i++) {
+        const stf_linear_drag drag = {(stf_real)i};
+        assert_ok(stf_world_add_force(world, &stf_force_linear_drag, &drag, 1, &ids[i]));
+    }
+    for (uint32_t i = 0; i < 20; i += 2)
+        assert_ok(stf_world_remove_force(world, ids[i]));
+    for (uint32_t i = 0; i < 20; i++) {
+        const stf_linear_drag *drag = stf_world_force_records(world, ids[i], &count);
+        assert_int_equal(count, i % 2);
+        assert_true(i % 2 ? drag->coefficient == (stf_real)i : drag == NULL);
+        assert_int_equal(stf_world_force_at(world, i), i < 10 ? ids[2 * i + 1] : 0);
+    }
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, &(stf_linear_drag){1}, 1, &again));
+    assert_int_equal(again, ids[19] + 1);
+    stf_world_destroy(world);
+}
+
+static void clear_empties_and_keeps_the_rest(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const double time = stf_world_time(world);
+
+    assert_ok(stf_world_clear(world));
+    assert_int_equal(stf_world_count(world), 0);
+    assert_true(stf_world_time(world) == time);
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 0, 0}}, NULL));
+    assert_ok(stf_world_step(world, 10));
+    const stf_particle particle = particle_of(world, 0);
+    assert_true(particle.position.x == 1 && particle.velocity.y == 0);
+    stf_world_destroy(world);
+}
+
+static void every_scene_is_made_and_stays_finite_with_its_own_integrator(void **state)
+{
+    (void)state;
+    for (int s = 0; scenes[s]; s++) {
+        stf_world *world;
+
+        assert_ok(scene_create(scenes[s], NULL, &world));
+        assert_true(stf_world_count(world) > 0);
+        assert_ok(stf_world_step(world, (unsigned)(scenes[s]->duration / scenes[s]->step)));
+        assert_false(stf_world_find_non_finite(world, NULL));
+        if (scenes[s]->exact) /* a good step for it: within a tenth of its size; explicit Euler on drag is the lecture's */
+            assert_below(scene_error(scenes[s], world), 0.1 * scenes[s]->size);
+        else
+            assert_true(isnan(scene_error(scenes[s], world)));
+        assert_ptr_equal(scene_find(scenes[s]->name), scenes[s]);
+        stf_world_destroy(world);
+    }
+    assert_null(scene_find("nowhere"));
+}
+
+/* The exact solutions of the scenes are solutions: they start where the particles start, and their v is the slope of their x. */
+static void exact_solutions_are_consistent(void **state)
+{
+    (void)state;
+    const double h = 1e-5, round_off = 1e-9;
+
+    for (int s = 0; scenes[s]; s++) {
+        stf_world *world;
+
+        if (!scenes[s]->exact)
+            continue;
+        assert_ok(scene_create(scenes[s], NULL, &world));
+        assert_below(scene_error(scenes[s], world), scenes[s]->size * 4 * REAL_EPSILON);
+        for (size_t i = 0; i < stf_world_count(world); i++)
+            for (double t = 0.125; t < scenes[s]->duration; t += scenes[s]->duration / 7) {
+                double before[3], after[3], x[3], v[3], unused[3];
+                if (!scenes[s]->exact(i, t, x, v))
+                    continue;
+                scenes[s]->exact(i, t - h, before, unused);
+                scenes[s]->exact(i, t + h, after, unused);
+                for (int d = 0; d < 3; d++) /* h^2 / 6 times a third derivative of up to some 100, and round-off over h */
+                    assert_close((after[d] - before[d]) / (2 * h), v[d], h * h * 100 + round_off * scenes[s]->size);
+            }
+        stf_world_destroy(world);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_defs_are_refused),
+        cmocka_unit_test(bad_particles_are_refused_and_change_nothing),
+        cmocka_unit_test(missing_particles_pointers_and_forces_are_refused_and_change_nothing),
+        cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
+        cmocka_unit_test(bad_forces_are_refused_and_change_nothing),
+        cmocka_unit_test(every_result_has_its_own_text),
+        cmocka_unit_test(all_memory_comes_from_the_allocator_and_goes_back),
+        cmocka_unit_test(steps_and_questions_allocate_nothing),
+        cmocka_unit_test(without_memory_calls_fail_and_change_nothing_they_did_not_do),
+        cmocka_unit_test(without_memory_no_world_is_made),
+        cmocka_unit_test(time_is_ticks_times_step),
+        cmocka_unit_test(forces_see_the_time_of_their_stage),
+        cmocka_unit_test(positions_are_copied_out_blended_and_strided),
+        cmocka_unit_test(energy_and_momentum_are_their_sums),
+        cmocka_unit_test(the_first_non_finite_particle_is_found),
+        cmocka_unit_test(a_zeroed_def_is_the_documented_world),
+        cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),
+        cmocka_unit_test(forces_keep_their_ids),
+        cmocka_unit_test(clear_empties_and_keeps_the_rest),
+        cmocka_unit_test(every_scene_is_made_and_stays_finite_with_its_own_integrator),
+        cmocka_unit_test(exact_solutions_are_consistent),
+    };
+
+    return cmocka_run_group_tests_name("world, " REAL_NAME, tests, NULL, NULL);
+}
