@@ -25,7 +25,7 @@ stf_result stf_clock_init(stf_clock *clock, const stf_clock_def *def)
         return STF_ERROR_NULL;
 
     const double step = def->step == 0 ? DEFAULT_STEP : def->step;
-    const double ticks_of_longest = DEFAULT_LONGEST_FRAME / step;
+    const double ticks_of_longest = DEFAULT_LONGEST_FRAME / step + WHOLE_STEP_SLACK;
 
     if (!is_step(step))
         return STF_ERROR_STEP;
@@ -60,7 +60,9 @@ static double snap(stf_clock *clock, double frame_seconds)
     const double snapped = period * floor(frame_seconds / period + 0.5);
     const double set_aside = clock->set_aside + (frame_seconds - snapped);
 
-    if (snapped <= 0 || fabs(frame_seconds - snapped) > STF_CLOCK_SNAP || fabs(set_aside) > clock->step)
+    if (snapped <= 0 || fabs(frame_seconds - snapped) > STF_CLOCK_SNAP)
+        return frame_seconds;
+    if (fabs(set_aside) > clock->step && fabs(set_aside) > fabs(clock->set_aside))
         return frame_seconds;
 
     clock->set_aside = set_aside;
@@ -69,9 +71,10 @@ static double snap(stf_clock *clock, double frame_seconds)
 
 stf_result stf_clock_advance(stf_clock *clock, double frame_seconds, unsigned *ticks)
 {
+    if (ticks)
+        *ticks = 0;
     if (!clock || !ticks)
         return STF_ERROR_NULL;
-    *ticks = 0;
     if (!is_duration(frame_seconds))
         return STF_ERROR_FRAME_TIME;
 
@@ -79,7 +82,9 @@ stf_result stf_clock_advance(stf_clock *clock, double frame_seconds, unsigned *t
         return STF_ERROR_FRAME_TIME;
 
     const double simulated = clock->remainder + snap(clock, frame_seconds) * clock->time_scale;
-    const double whole = floor(simulated / clock->step + WHOLE_STEP_SLACK);
+    /* A lent remainder is no tick; neither is, while paused, one that a shorter step has made whole. */
+    const double whole =
+        clock->time_scale > 0 ? fmax(0, floor(simulated / clock->step + WHOLE_STEP_SLACK)) : 0;
     const double run = whole < clock->max_ticks ? whole : clock->max_ticks;
     const double remainder = simulated - whole * clock->step;
     const bool single = clock->single_steps > 0 && run < UINT_MAX;
@@ -87,7 +92,7 @@ stf_result stf_clock_advance(stf_clock *clock, double frame_seconds, unsigned *t
     clock->dropped_this_frame = (whole - run) * clock->step;
     clock->dropped += clock->dropped_this_frame;
     /* A frame of 2^53 steps has round-off in place of a remainder. */
-    clock->remainder = fabs(remainder) <= clock->step ? remainder : 0;
+    clock->remainder = whole > 0 && fabs(remainder) > clock->step ? 0 : remainder;
     clock->single_steps -= single;
     *ticks = (unsigned)run + single;
     clock->ticks += *ticks;

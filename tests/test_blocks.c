@@ -1,8 +1,8 @@
 /* Blocks change no bit: every count, in a block or out of it, alone or together, in one call or in many. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "support/check.h"
+#include "support/memory.h"
 #include "support/problem.h"
 
 #define LARGEST 1000
@@ -188,6 +188,110 @@ static void ways_of_filling_a_world_are_equal(void **state)
     stf_world_destroy(single);
 }
 
+/* What a force was handed, call by call. */
+typedef struct census {
+    size_t calls, particles, next_first;
+    bool in_order;
+} census;
+
+static void count_particles(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    census *c = *(census *const *)records;
+    (void)record_count, (void)time;
+
+    c->calls++;
+    c->in_order = c->in_order && particles->first == c->next_first && particles->stride == (size_t)1 << particles->shift &&
+                  particles->stride <= STF_BLOCK_MAX && particles->dimensions == 3 && (uintptr_t)particles->force % 64 == 0 &&
+                  (uintptr_t)particles->position % 64 == 0 && (uintptr_t)particles->velocity % 64 == 0;
+    c->particles += particles->count;
+    c->next_first += particles->count;
+    for (size_t i = 0; i < particles->count; i++)
+        particles->force[stf_particles_offset(particles, i) + 2 * particles->stride] += (stf_real)(particles->first + i);
+}
+
+/* Every particle in turn, whole blocks but for the last, the whole world at once for a link; and the force reaches that particle. */
+static void forces_are_handed_every_particle_once(void **state)
+{
+    (void)state;
+    for (int link = 0; link < 2; link++)
+        for (size_t c = 0; c < COUNT_OF(counts); c++) {
+            const stf_force counter = {.name = "census",
+                                       .kind = link ? STF_LINK : STF_FIELD,
+                                       .record_size = sizeof(census *),
+                                       .apply = count_particles};
+            census seen = {.in_order = true}, *at = &seen;
+            stf_world *world = make_world((stf_world_def){.step = 1});
+
+            for (size_t i = 0; i < counts[c]; i++)
+                assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+            add_force(world, &counter, &at);
+            assert_ok(stf_world_step(world, 1));
+            assert_true(seen.in_order);
+            assert_int_equal(seen.particles, counts[c]);
+            assert_int_equal(seen.calls, link ? counts[c] > 0 : (counts[c] + STF_BLOCK_MAX - 1) / STF_BLOCK_MAX);
+            for (size_t i = 0; i < counts[c]; i++)
+                assert_true(particle_of(world, i).velocity.z == (stf_real)i);
+            stf_world_destroy(world);
+        }
+}
+
+/* Sums what stands in the lanes of a block behind its particles; the inverse masses too, which end with the block. */
+static void sum_spare_lanes(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    stf_real *sum = *(stf_real *const *)records;
+    (void)record_count, (void)time;
+
+    *sum = 0;
+    for (size_t i = particles->count; i < particles->stride; i++) {
+        *sum += particles->inverse_mass[i];
+        for (size_t d = 0; d < particles->dimensions; d++) {
+            const stf_real x = particles->position[d * particles->stride + i], v = particles->velocity[d * particles->stride + i];
+            *sum += x * x + v * v;
+        }
+    }
+}
+
+/* Sets every velocity to the number of x, v and a there that are not 0. */
+static void count_elements(stf_system *system, stf_real dt)
+{
+    (void)dt;
+    system->accelerate(system, system->time, system->position, system->velocity, system->work[0]);
+    for (size_t i = 0; i < system->length; i++)
+        system->velocity[i] = (stf_real)((system->position[i] != 0) + (system->velocity[i] != 0) + (system->work[0][i] != 0));
+}
+
+/* So says integrator.h: whatever the allocator hands out, and after removals. */
+static void elements_of_no_particle_are_zero(void **state)
+{
+    (void)state;
+    stf_real left_over = 1;
+    counting c = {0};
+    const stf_integrator counter = {.name = "counter", .step = count_elements, .work_arrays = 1};
+    stf_world *world = make_world((stf_world_def){.integrator = &counter,
+                                                  .step = 1,
+                                                  .gravity = {0, -1, 0},
+                                                  .allocator = counting_allocator(&c)});
+    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = sum_spare_lanes};
+    stf_real *at = &left_over;
+
+    for (size_t i = 0; i < 20; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 1, 1}, .velocity = {1, 1, 1}, .inverse_mass = 1}, NULL));
+    for (size_t i = 0; i < 10; i++)
+        assert_ok(stf_world_remove(world, 3, NULL));
+    add_force(world, &spy, &at);
+    assert_ok(stf_world_step(world, 1));
+    assert_true(left_over == 0);
+    for (size_t i = 0; i < 10; i++)
+        assert_true(particle_of(world, i).velocity.y == 3 && particle_of(world, i).velocity.x == 2);
+
+    assert_ok(stf_world_clear(world));
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    left_over = 1;
+    assert_ok(stf_world_step(world, 1));
+    assert_true(left_over == 0);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -196,6 +300,8 @@ int main(void)
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
         cmocka_unit_test(making_room_changes_no_bit),
         cmocka_unit_test(ways_of_filling_a_world_are_equal),
+        cmocka_unit_test(forces_are_handed_every_particle_once),
+        cmocka_unit_test(elements_of_no_particle_are_zero),
     };
 
     return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);

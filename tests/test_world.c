@@ -2,11 +2,11 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scenes/scene.h"
 #include "support/check.h"
+#include "support/memory.h"
 #include "support/problem.h"
 
 static const stf_real not_a_number = (stf_real)NAN, infinite = (stf_real)INFINITY;
@@ -287,48 +287,6 @@ static void every_result_has_its_own_text(void **state)
     assert_string_equal(stf_version(), version);
 }
 
-/* An allocator that counts what is out, checks sizes and alignment, and fails on demand. */
-typedef struct counting {
-    size_t blocks, bytes, calls;
-    size_t fail_at; /* this call returns NULL; 0: none */
-} counting;
-
-#define HEADER 64 /* keeps malloc's alignment of 16 at least, up to the 64 that is asked for */
-
-static void *count_allocate(void *user, size_t size, size_t alignment)
-{
-    counting *c = user;
-
-    assert_int_equal(alignment, 64);
-    if (++c->calls == c->fail_at)
-        return NULL;
-    unsigned char *taken = malloc(size + alignment + HEADER);
-    assert_non_null(taken);
-    unsigned char *aligned = taken + HEADER + (alignment - ((uintptr_t)taken + HEADER) % alignment) % alignment;
-    memcpy(aligned - sizeof taken, &taken, sizeof taken);
-    c->blocks++;
-    c->bytes += size;
-    memset(aligned, 0xa5, size); /* nobody may rely on zeros */
-    return aligned;
-}
-
-static void count_release(void *user, void *memory, size_t size)
-{
-    counting *c = user;
-    unsigned char *taken;
-
-    assert_non_null(memory);
-    memcpy(&taken, (unsigned char *)memory - sizeof taken, sizeof taken);
-    free(taken);
-    c->blocks--;
-    c->bytes -= size;
-}
-
-static stf_allocator counting_allocator(counting *c)
-{
-    return (stf_allocator){.allocate = count_allocate, .release = count_release, .user = c};
-}
-
 static void all_memory_comes_from_the_allocator_and_goes_back(void **state)
 {
     (void)state;
@@ -342,7 +300,7 @@ static void all_memory_comes_from_the_allocator_and_goes_back(void **state)
     assert_int_equal(c.bytes, 0);
 
     stf_world *none = NULL;
-    const stf_world_def half = {.allocator = {.allocate = count_allocate, .user = &c}};
+    const stf_world_def half = {.allocator = {.allocate = allocator.allocate, .user = &c}};
     assert_refused(stf_world_create(&half, &none), STF_ERROR_DESCRIPTOR);
     assert_null(none);
 }
@@ -571,6 +529,23 @@ static void energy_and_momentum_are_their_sums(void **state)
     stf_world_destroy(world);
 }
 
+/* G m m / d between the two that have a mass; an immovable one between them neither adds nor divides by 0. */
+static void immovable_particles_have_no_gravitational_energy(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 1});
+    stf_energy energy;
+
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {0, 0, 0}, .inverse_mass = 1}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 0, 0}}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {2, 0, 0}, .inverse_mass = 0.5}, NULL));
+    add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){.gravitational_constant = 3});
+    add_force(world, &stf_force_attractor, &(stf_attractor){.position = {4, 0, 0}, .strength = 8});
+    assert_ok(stf_world_energy(world, &energy));
+    assert_true(energy.kinetic == 0 && energy.potential == -3 * 2 / 2.0 - 8 / 4.0 - 8 * 2 / 2.0);
+    stf_world_destroy(world);
+}
+
 static void the_first_non_finite_particle_is_found(void **state)
 {
     (void)state;
@@ -740,6 +715,7 @@ int main(void)
         cmocka_unit_test(forces_see_the_time_of_their_stage),
         cmocka_unit_test(positions_are_copied_out_blended_and_strided),
         cmocka_unit_test(energy_and_momentum_are_their_sums),
+        cmocka_unit_test(immovable_particles_have_no_gravitational_energy),
         cmocka_unit_test(the_first_non_finite_particle_is_found),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
         cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),

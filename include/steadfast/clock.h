@@ -49,7 +49,7 @@ typedef struct stf_clock {
     double remainder;         /* s of simulated time that have not made a tick yet */
     double dropped;           /* s of simulated time given up by max_ticks, in all */
     double dropped_this_frame; /* s */
-    double set_aside;         /* s of real time that snapping holds back (negative: lent); never more than a step */
+    double set_aside;         /* s of real time that snapping holds back (negative: lent); it never grows beyond a step */
 } stf_clock;
 
 /* Errors: NULL, STEP, FRAME_TIME (display_period or time_scale). */
@@ -57,7 +57,7 @@ STF_API stf_result stf_clock_init(stf_clock *clock, const stf_clock_def *def);
 
 /*
  * A frame took frame_seconds: *ticks gets the number of ticks to run now. Errors: NULL, FRAME_TIME (negative, not finite, or
- * more steps than a double holds: the clock does not change and *ticks is 0).
+ * more steps than a double holds). On an error the clock does not change and *ticks is 0.
  */
 STF_API stf_result stf_clock_advance(stf_clock *clock, double frame_seconds, unsigned *ticks);
 

@@ -115,7 +115,7 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
     if (!is_integrator(integrator))
         return STF_ERROR_DESCRIPTOR;
 
-    const stf_result no_room = stf_storage_require(world, world->count, integrator, world->link_count > 0);
+    const stf_result no_room = stf_storage_require(world, world->count, integrator, false);
     if (no_room)
         return no_room;
 

@@ -65,8 +65,7 @@ stf_result stf_world_add_many(stf_world *world, const stf_particle *particles, s
     if (count > SIZE_MAX - world->count)
         return STF_ERROR_MEMORY;
 
-    const stf_result no_room =
-        stf_storage_require(world, world->count + count, world->integrator, world->link_count > 0);
+    const stf_result no_room = stf_storage_require(world, world->count + count, world->integrator, false);
     if (no_room)
         return no_room;
 
@@ -154,25 +153,17 @@ stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
     return STF_OK;
 }
 
-static void clear_array(stf_real *array, size_t reals)
-{
-    if (array)
-        memset(array, 0, reals * sizeof(stf_real));
-}
-
 stf_result stf_world_clear(stf_world *world)
 {
     if (!world)
         return STF_ERROR_NULL;
 
     const size_t lanes = stf_world_blocks(world) * world->storage.stride;
-    stf_storage *storage = &world->storage;
+    const stf_storage *storage = &world->storage;
 
-    clear_array(storage->position, lanes * world->dimensions);
-    clear_array(storage->velocity, lanes * world->dimensions);
-    clear_array(storage->previous, lanes * world->dimensions);
-    clear_array(storage->inverse_mass, lanes);
-    clear_array(storage->radius, lanes);
+    memset(storage->position, 0, lanes * world->dimensions * sizeof(stf_real));
+    memset(storage->velocity, 0, lanes * world->dimensions * sizeof(stf_real));
+    memset(storage->inverse_mass, 0, lanes * sizeof(stf_real));
     stf_world_drop_particle_records(world);
     world->count = 0;
     world->history_stale = true;

@@ -131,5 +131,5 @@ stf_result stf_world_reserve(stf_world *world, size_t capacity)
     if (!world)
         return STF_ERROR_NULL;
 
-    return stf_storage_require(world, capacity, world->integrator, world->link_count > 0);
+    return stf_storage_require(world, capacity, world->integrator, false);
 }

@@ -16,7 +16,7 @@
 #define stf_world_release_forces stf_world_release_forces_f64
 #endif
 
-/* All arrays of a world, in one piece of memory. Lanes that hold no particle are 0 in every array but the work arrays. */
+/* All arrays of a world, in one piece of memory. Lanes that hold no particle have position, velocity and inverse mass 0. */
 typedef struct stf_storage {
     void *memory;
     size_t bytes;
@@ -59,8 +59,8 @@ struct stf_world {
     stf_force_id last_force_id;
 };
 
-/* Has storage with at least this room, for this integrator's arrays, and `whole` work arrays if asked; moves the particles and
-   their history there. STF_ERROR_MEMORY leaves all as it was. */
+/* Has storage with at least this room, for this integrator's arrays, and with `whole` work arrays if that is asked or was before;
+   moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was. */
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole);
 void stf_storage_release(stf_world *world);
 
