@@ -1,4 +1,4 @@
-# Steadfast. `make deps test` proves the library; `make help` lists the rest.
+# Steadfast. `make deps run` shows the demo, `make deps test` proves the library; `make help` lists the rest.
 
 # ---- settings: set them on the command line ------------------------------------------------------------------------------
 
@@ -24,10 +24,12 @@ BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
 ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c
 TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
+DEMO_SOURCES  := $(wildcard demo/*.c)
 HEADERS       := $(wildcard include/steadfast/*.h)
 
 LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
                    $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+DEMO_OBJECTS    := $(DEMO_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o)
 
 TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
@@ -46,6 +48,7 @@ LINK_NAME   := libsteadfast.so
 SHARED_FLAGS = -shared -Wl,-soname,$(SONAME)
 endif
 SHARED := $(BUILD)/$(SHARED_NAME)
+DEMO   := $(BUILD)/demo
 
 # ---- how ---------------------------------------------------------------------------------------------------------------------
 
@@ -58,8 +61,7 @@ WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wsign-conversion -Wfloat-conver
 # not taken may still be computed, both of which a vector loop wants.
 ARITHMETIC := -ffp-contract=off -fno-math-errno -fno-trapping-math
 
-SANITIZE := $(if $(SAN),-fsanitize=address$(comma)undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-comma := ,
+SANITIZE := $(if $(SAN),-fsanitize=address -fsanitize=undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 COMPILE = $(CC) -std=c99 -pedantic $(if $(SAN),-O1 -g,$(OPTIMISE)) $(WARNINGS) $(ARITHMETIC) -fPIC -fvisibility=hidden $(SANITIZE) \
           -Iinclude -MMD -MP $(CPPFLAGS) $(CFLAGS)
@@ -69,18 +71,25 @@ LINK    = $(CC) $(SANITIZE) $(LDFLAGS)
 package = $(shell pkg-config $(1) 2>/dev/null)
 CMOCKA_FLAGS = $(patsubst -I%,-isystem %,$(call package,--cflags cmocka))
 CMOCKA_LIBS  = $(call package,--libs cmocka)
+SDL_FLAGS    = $(patsubst -I%,-isystem %,$(call package,--cflags sdl2 SDL2_ttf SDL2_image))
+SDL_LIBS     = $(call package,--libs sdl2 SDL2_ttf SDL2_image)
 HAVE_CMOCKA  = pkg-config --exists cmocka 2>/dev/null
+HAVE_SDL     = pkg-config --exists sdl2 SDL2_ttf SDL2_image 2>/dev/null
 
 # Whatever is asked for together with deps waits for it, also under -j.
 DEPS_FIRST := $(filter deps,$(MAKECMDGOALS))
 
-.PHONY: all library test deps install uninstall clean help need-cmocka
+.PHONY: all library demo run pictures test deps install uninstall clean help need-cmocka need-sdl
 
 all: library
+	@if $(HAVE_SDL); then $(MAKE) --no-print-directory demo; \
+	else echo "steadfast: the library is built; for the demo, which needs SDL2, SDL2_ttf and SDL2_image, type: make deps"; fi
 
 help:
-	@echo "make                 libsteadfast.a, the shared library, into $(BUILD)"
+	@echo "make                 libsteadfast.a, the shared library, and the demo if SDL2 is there, into $(BUILD)"
 	@echo "make deps            install what demo and tests need and is not there"
+	@echo "make run             the demo (without a display: a picture of each scene)"
+	@echo "make pictures        the README's pictures, anew"
 	@echo "make test            all tests"
 	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
 	@echo "make clean           remove build/"
@@ -111,6 +120,22 @@ $(BUILD)/$(LINK_NAME): $(SHARED)
 	@ln -sf $(SHARED_NAME) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $@
 
+# ---- demo --------------------------------------------------------------------------------------------------------------------
+
+demo: $(DEMO)
+
+run: $(DEMO)
+	$(DEMO)
+
+# The pictures of the README.
+pictures: $(DEMO)
+	@mkdir -p demo/pictures
+	$(DEMO) --headless --scene cloth --ticks 720 --png demo/pictures/cloth.png
+	$(DEMO) --headless --scene drag --integrator explicit_euler --ghost rk4 --png demo/pictures/drag.png
+
+need-sdl: | $(DEPS_FIRST)
+	@$(HAVE_SDL) || { echo "steadfast: the demo needs SDL2, SDL2_ttf and SDL2_image: type: make deps" >&2; exit 1; }
+
 $(BUILD)/f32/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
 	$(COMPILE) -Idemo -c $< -o $@
@@ -119,10 +144,17 @@ $(BUILD)/f64/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
 	$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
 
+$(BUILD)/f32/demo/%.o: demo/%.c Makefile | need-sdl
+	@mkdir -p $(@D)
+	$(COMPILE) -Idemo -DSTF_DEMO_FONTS='"$(CURDIR)/demo/fonts"' $(SDL_FLAGS) -c $< -o $@
+
+$(DEMO): $(DEMO_OBJECTS) $(STATIC)
+	$(LINK) $^ $(SDL_LIBS) -lm -o $@
+
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 test: $(TESTS) library
-	@CC="$(CC)" MAKE="$(MAKE)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
+	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
 	@$(HAVE_CMOCKA) || { echo "steadfast: the tests need cmocka: type: make deps" >&2; exit 1; }

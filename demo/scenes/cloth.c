@@ -6,7 +6,7 @@
 #define MASS 0.002     /* kg */
 #define STIFFNESS 500  /* N/m */
 #define DAMPING 0.05   /* N s/m */
-#define AIR_DRAG 0.001 /* kg/s a mass */
+#define AIR_DRAG 0.006 /* kg/s a mass: the swing dies away within seconds */
 #define GRAVITY 9.81   /* m/s^2 */
 #define SPRINGS (2 * SIDE * (SIDE - 1) + 2 * (SIDE - 1) * (SIDE - 1))
 
@@ -77,11 +77,11 @@ const scene scene_cloth = {
     .dimensions = 3,
     .integrator = &stf_semi_implicit_euler,
     .step = 1.0 / 1200,
-    .duration = 2,
+    .duration = 1,
     .size = SPACING * (SIDE - 1),
     .time_scale = 1,
     .gravity = {0, (stf_real)-GRAVITY, 0},
-    .view_y = -0.6,
-    .view_half_height = 1.2,
+    .view_y = -0.7,
+    .view_half_height = 1,
     .populate = populate,
 };
