@@ -325,6 +325,28 @@ static void forces_at_rest_are_minus_the_gradient_of_the_potential(void **state)
     }
 }
 
+/* Springs to the origin from particles in every block and at its edges: k l^2 / 2 each, however they are spread over blocks. */
+static void potentials_count_every_block_once(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 1});
+    const uint32_t held[] = {0, 1, 127, 128, 129, 255, 256, 257, COUNT - 1};
+    stf_anchored_spring springs[COUNT_OF(held)];
+    stf_energy energy;
+    double expected = 0;
+
+    for (size_t i = 0; i < COUNT; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 0, 0}, .inverse_mass = 1}, NULL));
+    for (size_t s = 0; s < COUNT_OF(held); s++) {
+        springs[s] = (stf_anchored_spring){.particle = held[s], .stiffness = 2};
+        expected += (double)held[s] * (double)held[s];
+    }
+    assert_ok(stf_world_add_force(world, &stf_force_anchored_springs, springs, COUNT_OF(held), NULL));
+    assert_ok(stf_world_energy(world, &energy));
+    assert_true(energy.potential == expected); /* whole numbers */
+    stf_world_destroy(world);
+}
+
 /* The accelerations of all four particles when position, velocity or time are other than in the example. */
 static void accelerations_with(const example *e, unsigned changed, vector a[4])
 {
@@ -460,6 +482,7 @@ int main(void)
         cmocka_unit_test(all_pairs_gravity_is_the_sum_over_all_others),
         cmocka_unit_test(coincidence_pulls_nowhere),
         cmocka_unit_test(forces_at_rest_are_minus_the_gradient_of_the_potential),
+        cmocka_unit_test(potentials_count_every_block_once),
         cmocka_unit_test(forces_depend_on_exactly_what_they_say),
         cmocka_unit_test(immovable_particles_feel_nothing_not_even_infinity),
         cmocka_unit_test(springs_follow_their_particles_when_others_are_removed),

@@ -558,7 +558,7 @@ static void the_first_non_finite_particle_is_found(void **state)
     assert_false(stf_world_find_non_finite(world, &index));
     assert_int_equal(index, 77);
 
-    const size_t runaways[] = {299, 257, 256, 1};
+    const size_t runaways[] = {299, 257, 256, 1, 0};
     for (size_t k = 0; k < COUNT_OF(runaways); k++) {
         /* Two steps at the largest speed overflow the position. */
         assert_ok(stf_world_set(world, runaways[k], &(stf_particle){.velocity = {0, 0, REAL_MAX}, .inverse_mass = 1}));
@@ -567,6 +567,96 @@ static void the_first_non_finite_particle_is_found(void **state)
         assert_int_equal(index, runaways[k]);
         assert_true(stf_world_find_non_finite(world, NULL));
     }
+    stf_world_destroy(world);
+}
+
+/* 1 N along y, as a user would write it. */
+static void lift(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)record_count, (void)time;
+    for (size_t i = 0; i < particles->count; i++)
+        particles->force[particles->stride + i] += 1;
+}
+
+static const stf_force lift_force = {.name = "lift", .kind = STF_FIELD, .apply = lift};
+
+/* What an integrator remembers of the forces before must not act once: velocities of 1/64 a step are exact. */
+static void changed_forces_act_from_the_very_next_step(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        stf_world *world = make_world((stf_world_def){.integrator = stf_integrators[k], .step = 1.0 / 64});
+        stf_force_id id;
+
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+        assert_ok(stf_world_add_force(world, &lift_force, NULL, 0, &id));
+        assert_ok(stf_world_step(world, 8));
+        assert_close(particle_of(world, 0).velocity.y, 8 / 64.0, 8 * REAL_EPSILON);
+        assert_ok(stf_world_remove_force(world, id));
+        const stf_real kept = particle_of(world, 0).velocity.y;
+        assert_ok(stf_world_step(world, 8));
+        assert_close(particle_of(world, 0).velocity.y, kept, 8 * REAL_EPSILON);
+        assert_ok(stf_world_set_gravity(world, (stf_vector){0, 0, 2}));
+        assert_ok(stf_world_step(world, 8));
+        assert_close(particle_of(world, 0).velocity.z, 16 / 64.0, 8 * REAL_EPSILON);
+        assert_ok(stf_world_set_gravity(world, (stf_vector){0, 0, 0}));
+        assert_ok(stf_world_step(world, 8));
+        assert_close(particle_of(world, 0).velocity.z, 16 / 64.0, 8 * REAL_EPSILON);
+        stf_world_destroy(world);
+    }
+}
+
+/* Methods of order 2 and more are exact under gravity, from the first step of each particle on. */
+static void particles_added_on_the_way_start_like_the_first(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        stf_world *world =
+            make_world((stf_world_def){.integrator = stf_integrators[k], .step = 1.0 / 8, .gravity = {0, -2, 0}});
+        const stf_particle shot = {.velocity = {0, 4, 0}, .inverse_mass = 1};
+
+        if (stf_integrators[k]->order < 2) {
+            stf_world_destroy(world);
+            continue;
+        }
+        for (size_t i = 0; i < 20; i++) { /* one a step; the 17th makes the world grow */
+            assert_ok(stf_world_add(world, &shot, NULL));
+            assert_ok(stf_world_step(world, 1));
+        }
+        for (size_t i = 0; i < 20; i++) {
+            const double t = (double)(20 - i) / 8; /* heights of at most 4 m, rounded some twice a step */
+            assert_close(particle_of(world, i).position.y, 4 * t - t * t, 2 * 20 * 4 * REAL_EPSILON);
+            assert_close(particle_of(world, i).velocity.y, 4 - 2 * t, 2 * 20 * 4 * REAL_EPSILON);
+        }
+        stf_world_destroy(world);
+    }
+}
+
+static bool steps_by_blocks(const stf_world *world)
+{
+    char text[4096];
+
+    stf_world_describe(world, text, sizeof text);
+    return strstr(text, "block by block") != NULL;
+}
+
+static void only_link_forces_make_a_world_step_as_a_whole(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){0});
+    stf_force_id drag, link, other_link;
+
+    assert_true(steps_by_blocks(world));
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, &(stf_linear_drag){1}, 1, &drag));
+    assert_true(steps_by_blocks(world));
+    assert_ok(stf_world_add_force(world, &idle_link, NULL, 0, &link));
+    assert_ok(stf_world_add_force(world, &idle_link, NULL, 0, &other_link));
+    assert_false(steps_by_blocks(world));
+    assert_ok(stf_world_remove_force(world, drag));
+    assert_ok(stf_world_remove_force(world, link));
+    assert_false(steps_by_blocks(world));
+    assert_ok(stf_world_remove_force(world, other_link));
+    assert_true(steps_by_blocks(world));
     stf_world_destroy(world);
 }
 
@@ -717,6 +807,9 @@ int main(void)
         cmocka_unit_test(energy_and_momentum_are_their_sums),
         cmocka_unit_test(immovable_particles_have_no_gravitational_energy),
         cmocka_unit_test(the_first_non_finite_particle_is_found),
+        cmocka_unit_test(changed_forces_act_from_the_very_next_step),
+        cmocka_unit_test(particles_added_on_the_way_start_like_the_first),
+        cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
         cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),
         cmocka_unit_test(forces_keep_their_ids),
