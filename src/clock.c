@@ -4,7 +4,6 @@
 #include <limits.h>
 #include <math.h>
 
-#define DEFAULT_STEP (1.0 / 60.0) /* s */
 #define DEFAULT_LONGEST_FRAME 0.25 /* s */
 
 /*
@@ -19,28 +18,32 @@
 static bool is_step(double step) { return isfinite(step) && step > 0; }
 static bool is_duration(double seconds) { return isfinite(seconds) && seconds >= 0; }
 
+/* As many as make the longest frame, and at least one. */
+static unsigned default_max_ticks(double step)
+{
+    const double ticks = DEFAULT_LONGEST_FRAME / step + WHOLE_STEP_SLACK;
+
+    return ticks < 1 ? 1 : ticks < UINT_MAX ? (unsigned)ticks : UINT_MAX;
+}
+
 stf_result stf_clock_init(stf_clock *clock, const stf_clock_def *def)
 {
     if (!clock || !def)
         return STF_ERROR_NULL;
 
-    const double step = def->step == 0 ? DEFAULT_STEP : def->step;
-    const double ticks_of_longest = DEFAULT_LONGEST_FRAME / step + WHOLE_STEP_SLACK;
+    const double step = def->step == 0 ? STF_DEFAULT_STEP : def->step;
 
     if (!is_step(step))
         return STF_ERROR_STEP;
     if (!is_duration(def->display_period) || !is_duration(def->time_scale))
         return STF_ERROR_FRAME_TIME;
 
-    unsigned max_ticks = def->max_ticks;
-    if (max_ticks == 0)
-        max_ticks = ticks_of_longest < 1 ? 1 : ticks_of_longest < UINT_MAX ? (unsigned)ticks_of_longest : UINT_MAX;
-
     *clock = (stf_clock){
         .step = step,
         .display_period = def->display_period,
         .time_scale = def->time_scale == 0 ? 1 : def->time_scale,
-        .max_ticks = max_ticks,
+        .max_ticks = def->max_ticks ? def->max_ticks : default_max_ticks(step),
+        .max_ticks_by_time = def->max_ticks == 0,
     };
     return STF_OK;
 }
@@ -134,6 +137,29 @@ stf_result stf_clock_set_step(stf_clock *clock, double step)
     clock->step_start_time = stf_clock_time(clock);
     clock->step_start_tick = clock->ticks;
     clock->step = step;
+    if (clock->max_ticks_by_time)
+        clock->max_ticks = default_max_ticks(step);
+    return STF_OK;
+}
+
+stf_result stf_clock_set_display_period(stf_clock *clock, double display_period)
+{
+    if (!clock)
+        return STF_ERROR_NULL;
+    if (!is_duration(display_period))
+        return STF_ERROR_FRAME_TIME;
+
+    clock->display_period = display_period;
+    return STF_OK;
+}
+
+stf_result stf_clock_set_max_ticks(stf_clock *clock, unsigned max_ticks)
+{
+    if (!clock)
+        return STF_ERROR_NULL;
+
+    clock->max_ticks = max_ticks ? max_ticks : default_max_ticks(clock->step);
+    clock->max_ticks_by_time = max_ticks == 0;
     return STF_OK;
 }
 
@@ -142,6 +168,7 @@ stf_result stf_clock_single_step(stf_clock *clock)
     if (!clock)
         return STF_ERROR_NULL;
 
-    clock->single_steps++;
+    if (clock->single_steps < UINT_MAX)
+        clock->single_steps++;
     return STF_OK;
 }

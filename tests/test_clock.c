@@ -683,6 +683,50 @@ static void a_paused_clock_does_not_tick_when_its_step_gets_shorter(void **state
     assert_true(clock.remainder == 0.25);
 }
 
+/* The default cap is a quarter of a second whatever the step becomes; a cap that was given is kept. */
+static void default_cap_follows_the_step(void **state)
+{
+    (void)state;
+    stf_clock by_default = make_clock((stf_clock_def){.step = 1.0 / 64});
+    stf_clock given = make_clock((stf_clock_def){.step = 1.0 / 64, .max_ticks = 16});
+
+    assert_int_equal(by_default.max_ticks, 16);
+    assert_ok(stf_clock_set_step(&by_default, 1.0 / 1024));
+    assert_ok(stf_clock_set_step(&given, 1.0 / 1024));
+    assert_int_equal(by_default.max_ticks, 256);
+    assert_int_equal(given.max_ticks, 16);
+    assert_int_equal(advance(&by_default, 0.25), 256);
+    assert_int_equal(advance(&given, 0.25), 16);
+
+    assert_ok(stf_clock_set_max_ticks(&given, 0));
+    assert_ok(stf_clock_set_max_ticks(&by_default, 5));
+    assert_int_equal(given.max_ticks, 256);
+    assert_ok(stf_clock_set_step(&given, 1));
+    assert_ok(stf_clock_set_step(&by_default, 1));
+    assert_int_equal(given.max_ticks, 1);
+    assert_int_equal(by_default.max_ticks, 5);
+    assert_refused(stf_clock_set_max_ticks(NULL, 5), STF_ERROR_NULL);
+}
+
+static void display_period_can_change_and_refuses_what_the_def_does(void **state)
+{
+    (void)state;
+    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 64});
+    const double refused[] = {-1, (double)NAN, (double)INFINITY};
+
+    assert_ok(stf_clock_set_display_period(&clock, 1.0 / 64));
+    advance(&clock, 1.0 / 64 + 0.0001);
+    assert_true(clock.set_aside > 0);
+    const stf_clock before = clock;
+    for (size_t i = 0; i < COUNT_OF(refused); i++)
+        assert_refused(stf_clock_set_display_period(&clock, refused[i]), STF_ERROR_FRAME_TIME);
+    assert_refused(stf_clock_set_display_period(NULL, 1), STF_ERROR_NULL);
+    assert_memory_equal(&clock, &before, sizeof clock);
+    assert_ok(stf_clock_set_display_period(&clock, 0));
+    advance(&clock, 1.0 / 64 + 0.0001);
+    assert_true(clock.set_aside == before.set_aside);
+}
+
 static void single_steps_run_one_a_frame_while_paused(void **state)
 {
     (void)state;
@@ -731,7 +775,7 @@ static void a_single_step_waits_for_a_frame_that_has_room(void **state)
 static void time_goes_on_from_where_the_step_was_changed(void **state)
 {
     (void)state;
-    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 64});
+    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 64, .max_ticks = 16});
 
     assert_int_equal(advance(&clock, 10.25 / 64), 10);
     for (int n = 1; n <= 20; n++) {
@@ -763,7 +807,7 @@ static void a_step_shorter_than_the_remainder_keeps_alpha_below_1(void **state)
     assert_ok(stf_clock_set_step(&clock, 1.5));
     assert_true(stf_clock_alpha(&clock) == 0.5);
     assert_ok(stf_clock_set_step(&clock, 0.25));
-    clock.max_ticks = 3;
+    assert_ok(stf_clock_set_max_ticks(&clock, 3));
     assert_int_equal(advance(&clock, 0), 3);
     assert_true(clock.remainder == 0 && clock.dropped == 0);
 }
@@ -771,7 +815,7 @@ static void a_step_shorter_than_the_remainder_keeps_alpha_below_1(void **state)
 static void ticks_pass_32_bits(void **state)
 {
     (void)state;
-    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 64});
+    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 64, .max_ticks = 16});
 
     clock.ticks = UINT64_C(0xfffffffc);
     for (int frame = 0; frame < 10; frame++)
@@ -831,6 +875,8 @@ int main(void)
         cmocka_unit_test(a_new_scale_is_that_of_the_next_frame),
         cmocka_unit_test(what_is_set_aside_comes_back_after_a_shorter_step),
         cmocka_unit_test(a_paused_clock_does_not_tick_when_its_step_gets_shorter),
+        cmocka_unit_test(default_cap_follows_the_step),
+        cmocka_unit_test(display_period_can_change_and_refuses_what_the_def_does),
         cmocka_unit_test(single_steps_run_one_a_frame_while_paused),
         cmocka_unit_test(single_steps_come_on_top_of_a_running_clock),
         cmocka_unit_test(a_single_step_waits_for_a_frame_that_has_room),

@@ -159,6 +159,34 @@ static void spring_is_bounded_below_the_imaginary_limit_and_grows_above(void **s
     }
 }
 
+static stf_world *damped_world(const stf_integrator *integrator, double omega_dt, double k_dt)
+{
+    stf_world *world = spring_world(integrator, omega_dt);
+
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){.coefficient = (stf_real)k_dt});
+    return world;
+}
+
+/*
+ * A spring with drag, z = omega dt and q = k dt: the root that leaves the unit circle does so at -1. There x(n) = (-1)^n, so that
+ * the Verlet methods want z^2 + 4 q <= 4 and semi-implicit Euler z^2 + 2 q <= 4; the README gives both.
+ */
+static void spring_and_drag_together_lower_the_limit(void **state)
+{
+    (void)state;
+    const stf_integrator *const methods[] = {&stf_position_verlet, &stf_velocity_verlet, &stf_semi_implicit_euler};
+    const double drags[] = {0.0625, 0.25, 0.5, 0.75};
+
+    for (size_t m = 0; m < COUNT_OF(methods); m++)
+        for (size_t d = 0; d < COUNT_OF(drags); d++) {
+            const double limit = sqrt(4 - (methods[m] == &stf_semi_implicit_euler ? 2 : 4) * drags[d]);
+            const double below = limit * (1 - JUST), above = limit * (1 + JUST);
+
+            assert_below(amplitude_late(damped_world(methods[m], below, drags[d]), below), 1);
+            assert_true(grew(amplitude_late(damped_world(methods[m], above, drags[d]), above)));
+        }
+}
+
 /* |R(i z)|^2: what a step multiplies the energy of a spring by. */
 static double energy_factor(const stf_integrator *integrator, double z)
 {
@@ -235,6 +263,7 @@ int main(void)
         cmocka_unit_test(explicit_euler_decays_at_the_ugly_step_and_changes_sign),
         cmocka_unit_test(drag_is_bounded_below_the_real_limit_and_grows_above),
         cmocka_unit_test(spring_is_bounded_below_the_imaginary_limit_and_grows_above),
+        cmocka_unit_test(spring_and_drag_together_lower_the_limit),
         cmocka_unit_test(runge_kutta_methods_gain_or_lose_the_energy_that_theory_says),
         cmocka_unit_test(symplectic_methods_keep_their_own_invariant),
     };

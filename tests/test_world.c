@@ -317,7 +317,11 @@ static void steps_and_questions_allocate_nothing(void **state)
     float vertices[6];
     char text[2048];
 
+    const stf_spring springs[] = {{0, 1, 2, 0, 0}};
+
     for (int k = 0; k < 3; k++) {
+        if (k == 0)
+            assert_ok(stf_world_set_force(world, 1, springs, 1)); /* as many records as before */
         assert_ok(stf_world_step(world, 5));
         assert_ok(stf_world_energy(world, &energy));
         assert_ok(stf_world_momentum(world, momentum));
@@ -506,6 +510,8 @@ static void positions_are_copied_out_blended_and_strided(void **state)
 
     stf_world *forgetful = make_world((stf_world_def){0});
     assert_refused(stf_world_copy_positions(forgetful, 0.5, packed, 0), STF_ERROR_NO_PREVIOUS);
+    assert_refused(stf_world_copy_positions(world, 1, packed, 2 * sizeof(float) - 1), STF_ERROR_STRIDE);
+    assert_ok(stf_world_copy_positions(world, 1, packed, 2 * sizeof(float)));
     assert_ok(stf_world_copy_positions(forgetful, 1, NULL, 0)); /* no particles, no buffer */
     stf_world_destroy(forgetful);
     stf_world_destroy(world);
@@ -701,6 +707,113 @@ static void describe_names_what_there_is_and_cuts_cleanly(void **state)
     stf_world_destroy(world);
 }
 
+static void records_are_replaced_by_more_by_fewer_and_by_themselves(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const stf_spring springs[] = {{0, 1, 2, 0, 0}, {1, 2, 3, 0, 0}, {2, 0, 4, 0, 0}};
+    const size_t sizes[] = {3, 3, 1, 2, 0, 1};
+    size_t count;
+
+    for (size_t k = 0; k < COUNT_OF(sizes); k++) {
+        assert_ok(stf_world_set_force(world, 1, springs + 3 - sizes[k], sizes[k]));
+        const stf_spring *now = stf_world_force_records(world, 1, &count);
+        assert_int_equal(count, sizes[k]);
+        if (count > 0)
+            assert_memory_equal(now, springs + 3 - sizes[k], count * sizeof *springs);
+        assert_ok(stf_world_set_force(world, 1, now, count)); /* the world's own */
+        now = stf_world_force_records(world, 1, &count);
+        assert_int_equal(count, sizes[k]);
+        if (count > 0)
+            assert_memory_equal(now, springs + 3 - sizes[k], count * sizeof *springs);
+        assert_ok(stf_world_step(world, 1));
+    }
+    /* A removal leaves fewer records than there is room for. */
+    assert_ok(stf_world_set_force(world, 1, springs, 3));
+    assert_ok(stf_world_remove(world, 1, NULL));
+    stf_world_force_records(world, 1, &count);
+    assert_int_equal(count, 1);
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_ok(stf_world_set_force(world, 1, springs, 3));
+    const stf_spring *now = stf_world_force_records(world, 1, &count);
+    assert_int_equal(count, 3);
+    assert_memory_equal(now, springs, sizeof springs);
+    stf_world_destroy(world);
+}
+
+/* All of eight records but their padding. */
+static void copy_fields(const stf_anchored_spring *springs, double fields[8][6])
+{
+    for (size_t s = 0; s < 8; s++) {
+        const double of_this[6] = {springs[s].particle, (double)springs[s].anchor.x + 2 * (double)springs[s].anchor.y,
+                                   (double)springs[s].anchor.z, (double)springs[s].stiffness,
+                                   (double)springs[s].damping, (double)springs[s].rest_length};
+        memcpy(fields[s], of_this, sizeof of_this);
+    }
+}
+
+/* The sum of forces is rounded in the order of the records, and so the order must not depend on how they were given. */
+static void anchored_springs_are_kept_in_one_order(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){0});
+    stf_anchored_spring springs[8];
+    double first[8][6];
+    stf_force_id id;
+    uint64_t seed = 4;
+    size_t count;
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    for (size_t s = 0; s < COUNT_OF(springs); s++) /* pairs that differ in one field each, the last in none */
+        springs[s] = (stf_anchored_spring){.particle = s == 0,
+                                           .anchor = {s == 1, s == 2, s == 3},
+                                           .stiffness = s == 4,
+                                           .damping = s == 5,
+                                           .rest_length = s == 6};
+    assert_ok(stf_world_add_force(world, &stf_force_anchored_springs, springs, COUNT_OF(springs), &id));
+    copy_fields(stf_world_force_records(world, id, &count), first);
+    for (int round = 0; round < 50; round++) {
+        for (size_t s = COUNT_OF(springs) - 1; s > 0; s--) {
+            const size_t other = (size_t)(next_random(&seed) * (double)(s + 1));
+            const stf_anchored_spring kept = springs[s];
+            springs[s] = springs[other];
+            springs[other] = kept;
+        }
+        assert_ok(stf_world_set_force(world, id, springs, COUNT_OF(springs)));
+        double now[8][6];
+        copy_fields(stf_world_force_records(world, id, &count), now);
+        assert_memory_equal(now, first, sizeof first);
+    }
+    stf_world_destroy(world);
+}
+
+/* The particle that takes the place of a removed one does not take over its acceleration. */
+static void a_moved_particle_goes_on_as_if_newly_set(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        const stf_world_def def = {.integrator = stf_integrators[k], .step = 1.0 / 8};
+        stf_world *pair = make_world(def), *alone = make_world(def);
+        size_t moved;
+
+        assert_ok(stf_world_add(pair, &(stf_particle){.position = {5, 0, 0}, .inverse_mass = 1}, NULL));
+        assert_ok(stf_world_add(pair, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+        add_force(pair, &stf_force_linear_drag, &(stf_linear_drag){1});
+        add_force(alone, &stf_force_linear_drag, &(stf_linear_drag){1});
+        assert_ok(stf_world_step(pair, 4));
+        const stf_particle last = particle_of(pair, 1);
+        assert_ok(stf_world_add(alone, &last, NULL));
+        assert_ok(stf_world_remove(pair, 0, &moved));
+        assert_ok(stf_world_step(pair, 4));
+        assert_ok(stf_world_step(alone, 4));
+        const stf_particle p = particle_of(pair, 0), q = particle_of(alone, 0);
+        assert_memory_equal(&p, &q, sizeof p);
+        stf_world_destroy(pair);
+        stf_world_destroy(alone);
+    }
+}
+
 static void forces_keep_their_ids(void **state)
 {
     (void)state;
@@ -812,6 +925,9 @@ int main(void)
         cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
         cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),
+        cmocka_unit_test(records_are_replaced_by_more_by_fewer_and_by_themselves),
+        cmocka_unit_test(anchored_springs_are_kept_in_one_order),
+        cmocka_unit_test(a_moved_particle_goes_on_as_if_newly_set),
         cmocka_unit_test(forces_keep_their_ids),
         cmocka_unit_test(clear_empties_and_keeps_the_rest),
         cmocka_unit_test(every_scene_is_made_and_stays_finite_with_its_own_integrator),

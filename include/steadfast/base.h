@@ -25,6 +25,9 @@ extern "C" {
 #define STF_VERSION_MINOR 1
 #define STF_VERSION_PATCH 0
 
+/* What a step of 0 stands for in the defs of worlds and clocks, s. */
+#define STF_DEFAULT_STEP (1.0 / 60.0)
+
 /* The largest number of dimensions of a world. */
 #define STF_DIMENSIONS_MAX 3
 
@@ -40,16 +43,18 @@ typedef enum stf_result {
     STF_ERROR_MEMORY,     /* the allocator returned NULL, or the size asked for does not fit size_t */
     STF_ERROR_NOT_FINITE, /* a NaN or an infinity */
     STF_ERROR_DIMENSIONS, /* dimensions over 3, or a component other than 0 in a dimension that the world lacks */
-    STF_ERROR_STEP,       /* a step that is negative, not finite, or 0 once it is divided into substeps as an stf_real */
+    STF_ERROR_STEP,       /* a step that is negative, not finite, or over its substeps no normal number of stf_real */
     STF_ERROR_SUBSTEPS,   /* 0 substeps */
-    STF_ERROR_MASS,       /* an inverse mass that is negative, infinite or NaN, or whose mass is more than an stf_real holds */
-    STF_ERROR_RADIUS,     /* a negative radius, or a radius in a world that does not keep radii */
+    STF_ERROR_MASS,       /* an inverse mass that is negative, infinite, NaN or subnormal (its mass may be no stf_real) */
+    STF_ERROR_RADIUS,     /* a radius that is negative, infinite or NaN, or not 0 in a world that does not keep radii */
     STF_ERROR_PARTICLE,   /* no particle has this index */
     STF_ERROR_FORCE,      /* no force has this id */
-    STF_ERROR_PARAMETERS, /* a force's parameters: a negative or non-finite coefficient, a spring from a particle to itself */
+    STF_ERROR_PARAMETERS, /* a force's parameters: a negative or non-finite coefficient, a spring from a particle to itself, records
+                             for a force that has none */
     STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays */
     STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
     STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
+    STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over */
     STF_ERROR_NO_PREVIOUS, /* blending was asked of a world that does not keep previous positions */
     STF_RESULT_COUNT
 } stf_result;
@@ -62,8 +67,8 @@ STF_API const char *stf_version(void);
 
 /*
  * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
- * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls it only from
- * create, destroy, and functions that add, reserve, or set an integrator or a force: never from a step.
+ * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from
+ * create, destroy, reserve, and functions that add particles or add, set or remove a force or set an integrator: never in a step.
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);

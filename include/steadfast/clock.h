@@ -1,8 +1,9 @@
 /*
  * clock: turns uneven frames into whole fixed steps.
  *
+ *     const double step = 1.0 / 60;    // also the stf_world_def's, which wants .keep_previous = true for the blending
  *     stf_clock clock;
- *     stf_clock_init(&clock, &(stf_clock_def){.step = 1.0 / 60});
+ *     stf_clock_init(&clock, &(stf_clock_def){.step = step});
  *     while (running) {
  *         unsigned ticks;
  *         stf_clock_advance(&clock, seconds_since_last_frame(), &ticks);
@@ -30,18 +31,19 @@ extern "C" {
 
 /* All zero is valid. */
 typedef struct stf_clock_def {
-    double step;           /* s a tick; 0: 1/60 */
-    unsigned max_ticks;    /* the most ticks that one frame may ask for; 0: as many as make 0.25 s, at least 1 */
+    double step;           /* s a tick; 0: STF_DEFAULT_STEP */
+    unsigned max_ticks;    /* the most ticks that one frame may ask for; 0: as many as make 0.25 s of simulated time, at least 1 */
     double display_period; /* s from one refresh of the display to the next, e.g. 1 / 59.94; 0: unknown, frames are not snapped */
     double time_scale;     /* simulated seconds a real second; 0: 1 (to start paused, set 0 with stf_clock_set_time_scale) */
 } stf_clock_def;
 
-/* A clock is a plain struct: copy it, keep it anywhere. Read its fields; change them by the functions below. */
+/* A clock is a plain struct: copy it, keep it anywhere, read its fields; change them by the functions below. */
 typedef struct stf_clock {
     double step;           /* s */
     double display_period; /* s, 0: none */
     double time_scale;
     unsigned max_ticks;
+    bool max_ticks_by_time;   /* max_ticks is the default, and follows the step */
     unsigned single_steps;    /* ticks asked for by stf_clock_single_step and not yet run: one a frame */
     uint64_t ticks;           /* all ticks so far */
     uint64_t step_start_tick; /* ticks when the step was last set */
@@ -70,8 +72,14 @@ STF_API double stf_clock_time(const stf_clock *clock);
 /* 0 pauses. Errors: NULL, FRAME_TIME (negative or not finite). */
 STF_API stf_result stf_clock_set_time_scale(stf_clock *clock, double time_scale);
 
-/* Changes the step; the remainder is kept, and max_ticks stays what it is. Errors: NULL, STEP. */
+/* Changes the step. The remainder is kept; a default max_ticks follows, one that was given stays. Errors: NULL, STEP. */
 STF_API stf_result stf_clock_set_step(stf_clock *clock, double step);
+
+/* For a window that moves to another display; 0: unknown. Errors: NULL, FRAME_TIME. */
+STF_API stf_result stf_clock_set_display_period(stf_clock *clock, double display_period);
+
+/* As in the def: 0 is as many as make 0.25 s. Errors: NULL. */
+STF_API stf_result stf_clock_set_max_ticks(stf_clock *clock, unsigned max_ticks);
 
 /* Has the next advance run one tick more than its time asks for, also when paused; called n times, the next n. Errors: NULL. */
 STF_API stf_result stf_clock_single_step(stf_clock *clock);

@@ -7,10 +7,11 @@
  *     typedef struct wind { stf_real push; } wind;                          // N
  *     static void blow(const void *records, size_t record_count, const stf_particles *particles, double time)
  *     {
- *         const wind *w = records;
- *         (void)record_count, (void)time;
- *         for (size_t i = 0; i < particles->count; i++)
- *             particles->force[i] += w->push;                               // along x
+ *         const wind *winds = records;
+ *         (void)time;
+ *         for (size_t r = 0; r < record_count; r++)
+ *             for (size_t i = 0; i < particles->count; i++)
+ *                 particles->force[i] += winds[r].push;                     // along x
  *     }
  *     const stf_force wind_force = {.name = "wind", .kind = STF_FIELD, .record_size = sizeof(wind), .apply = blow};
  *     ...

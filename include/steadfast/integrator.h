@@ -59,6 +59,7 @@ enum {
     STF_REVERSIBLE = 1 << 1  /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
 };
 
+/* name and step are required, and the arrays that step uses; the rest is for people and instruments, and no step reads it. */
 typedef struct stf_integrator {
     const char *name; /* "rk4" */
     void (*step)(stf_system *system, stf_real dt); /* dt in s */

@@ -70,7 +70,7 @@ STF_API stf_result stf_world_clear(stf_world *world);
 /*
  * Copies all positions out for a vertex buffer, as floats in both precisions: particle i's `dimensions` floats start at
  * byte i * stride_bytes of `positions`; stride_bytes 0 packs them. alpha in [0, 1] blends: 0 is the state one tick ago, 1 is
- * now; below 1 the world has to keep previous positions. Errors: ALPHA, NO_PREVIOUS.
+ * now; below 1 the world has to keep previous positions. Errors: ALPHA, NO_PREVIOUS, STRIDE. Cost: one pass.
  */
 STF_API stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *positions, size_t stride_bytes);
 
@@ -81,13 +81,18 @@ typedef uint32_t stf_force_id;
 
 /*
  * Adds a force with a copy of its records[record_count]. The descriptor has to outlive the world. A force without
- * parameters takes NULL and 0. The id goes to *id unless that is NULL. Errors: DESCRIPTOR, PARAMETERS, PARTICLE (a
- * record names one that is not there), DIMENSIONS, NOT_FINITE, MEMORY.
+ * parameters takes NULL and 0; so does one whose records are still to come. The id goes to *id unless that is NULL. Errors:
+ * DESCRIPTOR, PARAMETERS, PARTICLE (a record names one that is not there), DIMENSIONS, NOT_FINITE, MEMORY. Cost: an allocation;
+ * for the first link force also the integrator's work arrays for all particles.
  */
 STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force, const void *records,
                                        size_t record_count, stf_force_id *id);
 
-/* Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. */
+/*
+ * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where their number
+ * changes, and one acceleration more in the next step of velocity Verlet, whose last one was of the old records. A force that
+ * changes all the time had better compute its change from `time` in apply.
+ */
 STF_API stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *records, size_t record_count);
 
 /* The world's records of a force, to read; *record_count gets their number. NULL if there are none or no such force. They

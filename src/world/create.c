@@ -1,7 +1,5 @@
 #include "world.h"
 
-#define DEFAULT_STEP (1.0 / 60.0) /* s */
-
 /* Whether a step of the integrator is a number that the precision holds without loss. */
 static bool is_step(double step, unsigned substeps)
 {
@@ -41,7 +39,7 @@ static stf_world_def with_defaults(const stf_world_def *given)
     if (!def.integrator)
         def.integrator = &stf_semi_implicit_euler;
     if (def.step == 0)
-        def.step = DEFAULT_STEP;
+        def.step = STF_DEFAULT_STEP;
     if (def.substeps == 0)
         def.substeps = 1;
     return def;

@@ -24,6 +24,13 @@ static stf_result check_records(const stf_world *world, const stf_force *force, 
     return STF_OK;
 }
 
+static void arrange_records(stf_added_force *added, size_t record_count)
+{
+    added->record_count = record_count;
+    if (added->force->arrange && record_count > 0)
+        added->force->arrange(added->records, record_count);
+}
+
 /* Fills in `added`'s own copy of the records, in the order that the force wants. */
 static stf_result copy_records(const stf_world *world, stf_added_force *added, const void *records, size_t record_count)
 {
@@ -42,8 +49,7 @@ static stf_result copy_records(const stf_world *world, stf_added_force *added, c
     if (!added->records)
         return STF_ERROR_MEMORY;
     memcpy(added->records, records, added->bytes);
-    if (added->force->arrange)
-        added->force->arrange(added->records, record_count);
+    arrange_records(added, record_count);
     return STF_OK;
 }
 
@@ -123,13 +129,18 @@ stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *re
 
     stf_added_force changed = *added;
     stf_result bad = check_records(world, added->force, records, record_count);
-    if (!bad)
-        bad = copy_records(world, &changed, records, record_count);
     if (bad)
         return bad;
-
-    release_records(world, added);
-    *added = changed;
+    if (added->bytes > 0 && record_count == added->bytes / added->force->record_size) {
+        memmove(added->records, records, added->bytes); /* they may be the world's own */
+        arrange_records(added, record_count);
+    } else {
+        bad = copy_records(world, &changed, records, record_count);
+        if (bad)
+            return bad;
+        release_records(world, added);
+        *added = changed;
+    }
     world->history_stale = true;
     return STF_OK;
 }
@@ -186,9 +197,7 @@ static void renumber_records(stf_added_force *added, size_t removed, size_t last
             memcpy(records + kept * size, records + i * size, size);
         kept++;
     }
-    added->record_count = kept;
-    if (added->force->arrange && kept > 0)
-        added->force->arrange(records, kept);
+    arrange_records(added, kept);
 }
 
 void stf_world_renumber_forces(stf_world *world, size_t removed, size_t last)

@@ -166,7 +166,6 @@ stf_result stf_world_clear(stf_world *world)
     memset(storage->inverse_mass, 0, lanes * sizeof(stf_real));
     stf_world_drop_particle_records(world);
     world->count = 0;
-    world->history_stale = true;
     return STF_OK;
 }
 
@@ -178,6 +177,8 @@ stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *
         return STF_ERROR_ALPHA;
     if (alpha < 1 && !world->keep_previous)
         return STF_ERROR_NO_PREVIOUS;
+    if (stride_bytes > 0 && stride_bytes < world->dimensions * sizeof(float))
+        return STF_ERROR_STRIDE;
 
     const stf_storage *storage = &world->storage;
     const size_t bytes = stride_bytes ? stride_bytes : world->dimensions * sizeof(float);
