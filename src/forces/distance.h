@@ -1,27 +1,17 @@
-/* Squares of distances in double, for potentials. Components stand `stride` apart, as in stf_particles. */
+/* The square of a distance in double, for potentials. */
 #ifndef STEADFAST_SRC_DISTANCE_H
 #define STEADFAST_SRC_DISTANCE_H
 
 #include "../real.h"
 
-static inline double stf_square_between(const stf_real *a, const stf_real *b, size_t stride, unsigned dimensions)
+/* |a - b|^2; the components of each stand that far apart: a particle's by its block's stride, a vector's next to each other. */
+static inline double stf_square_between(const stf_real *a, size_t a_stride, const stf_real *b, size_t b_stride,
+                                        unsigned dimensions)
 {
     double square = 0;
 
     for (unsigned d = 0; d < dimensions; d++) {
-        const double distance = (double)a[d * stride] - (double)b[d * stride];
-        square += distance * distance;
-    }
-    return square;
-}
-
-static inline double stf_square_to_point(const stf_real *x, size_t stride, unsigned dimensions, stf_vector point)
-{
-    const stf_real components[STF_DIMENSIONS_MAX] = {point.x, point.y, point.z};
-    double square = 0;
-
-    for (unsigned d = 0; d < dimensions; d++) {
-        const double distance = (double)x[d * stride] - (double)components[d];
+        const double distance = (double)a[d * a_stride] - (double)b[d * b_stride];
         square += distance * distance;
     }
     return square;

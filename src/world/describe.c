@@ -46,7 +46,7 @@ static void append_head(text *t, const stf_world *world)
     append(t, "tick of %.6g s: %u step%s of %s (order %d, %d evaluation%s)\n", world->step, world->substeps,
            plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
            plural((unsigned long long)integrator->evaluations));
-    if (world->link_count == 0)
+    if (!stf_world_is_tied(world))
         append(t, "block by block: every pass of a tick runs in cache, memory is read and written once\n");
     else
         append(t, "links tie particles together: every pass runs over the whole world\n");
@@ -57,7 +57,7 @@ static void append_state(text *t, const stf_world *world)
     const double vector = (double)(world->dimensions * sizeof(stf_real)), real = (double)sizeof(stf_real);
     const stf_integrator *integrator = world->integrator;
     const unsigned long long steps = world->substeps, evaluations = (unsigned long long)integrator->evaluations;
-    const double work = world->link_count > 0 ? integrator->work_arrays * vector : 0;
+    const double work = world->storage.whole ? integrator->work_arrays * vector : 0;
 
     append(t, "  %-32s %13s %16s\n", "", "passes a tick", "bytes a particle");
     append_row(t, "position, velocity, inverse mass", 0, 2 * vector + real, "");

@@ -52,7 +52,7 @@ stf_result stf_world_energy(const stf_world *world, stf_energy *energy)
 
     *energy = (stf_energy){.kinetic = sum.kinetic, .potential = sum.gravity_potential};
     for (size_t i = 0; i < world->force_count; i++)
-        if (world->forces[i].force->potential)
+        if (world->forces[i].force->potential && stf_force_acts(&world->forces[i]))
             energy->potential += potential_of(world, &world->forces[i]);
     return STF_OK;
 }

@@ -107,7 +107,6 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
             release_records(world, &added);
             return bad;
         }
-        world->link_count++;
     }
 
     added.id = ++world->last_force_id;
@@ -163,8 +162,6 @@ stf_result stf_world_remove_force(stf_world *world, stf_force_id id)
     if (!added)
         return STF_ERROR_FORCE;
 
-    if (added->force->kind == STF_LINK)
-        world->link_count--;
     release_records(world, added);
     world->force_count--;
     memmove(added, added + 1, (size_t)(world->forces + world->force_count - added) * sizeof *added);

@@ -12,15 +12,17 @@ typedef struct range {
 /* a = g + F / m; a particle of no inverse mass feels neither. `a` holds F and gets a. */
 static void forces_to_accelerations(size_t n, stf_real *restrict a, const stf_real *restrict inverse_mass, stf_real g)
 {
-    for (size_t i = 0; i < n; i++)
-        a[i] = inverse_mass[i] > 0 ? g + a[i] * inverse_mass[i] : 0;
+    for (size_t i = 0; i < n; i++) {
+        const stf_real pushed = g + a[i] * inverse_mass[i]; /* by itself: clang then makes a vector loop */
+        a[i] = inverse_mass[i] > 0 ? pushed : 0;
+    }
 }
 
 static void apply_forces(const stf_world *world, stf_force_kind kind, const stf_particles *particles, double time)
 {
     for (size_t i = 0; i < world->force_count; i++) {
         const stf_added_force *added = &world->forces[i];
-        if (added->force->kind == kind)
+        if (added->force->kind == kind && stf_force_acts(added))
             added->force->apply(added->records, added->record_count, particles, time);
     }
 }
@@ -39,7 +41,7 @@ static void accelerate(stf_system *system, double time, const stf_real *position
             stf_world_particles(world, r->first_block + b, 1, position + at, velocity + at, acceleration + at);
         apply_forces(world, STF_FIELD, &block, time);
     }
-    if (world->link_count > 0) {
+    if (stf_world_is_tied(world)) {
         const stf_particles all = stf_world_particles(world, 0, r->blocks, position, velocity, acceleration);
         apply_forces(world, STF_LINK, &all, time);
     }
@@ -75,7 +77,8 @@ static range make_range(const stf_world *world, size_t first_block, size_t block
 static void step_range(const stf_world *world, size_t first_block, size_t blocks, unsigned ticks)
 {
     range r = make_range(world, first_block, blocks);
-    const double start = stf_world_time(world), substep = world->step / world->substeps;
+    const double substep = world->step / world->substeps;
+    const uint64_t start = world->ticks - world->step_start_tick;
     const stf_real dt = (stf_real)substep;
 
     r.system.history_stale = world->history_stale;
@@ -84,7 +87,7 @@ static void step_range(const stf_world *world, size_t first_block, size_t blocks
             memcpy(world->storage.previous + first_block * stf_world_block_length(world), r.system.position,
                    r.system.length * sizeof(stf_real));
         for (unsigned s = 0; s < world->substeps; s++) {
-            r.system.time = start + tick * world->step + s * substep;
+            r.system.time = world->step_start_time + (double)(start + tick) * world->step + s * substep;
             world->integrator->step(&r.system, dt);
             r.system.history_stale = false;
         }
@@ -97,7 +100,7 @@ stf_result stf_world_step(stf_world *world, unsigned ticks)
         return STF_ERROR_NULL;
 
     const size_t blocks = stf_world_blocks(world);
-    const size_t range_blocks = world->link_count > 0 ? blocks : 1;
+    const size_t range_blocks = stf_world_is_tied(world) ? blocks : 1;
 
     for (size_t first = 0; first < blocks; first += range_blocks)
         step_range(world, first, range_blocks, ticks);

@@ -55,7 +55,7 @@ struct stf_world {
     bool history_stale;
 
     stf_added_force *forces;
-    size_t force_count, force_capacity, link_count;
+    size_t force_count, force_capacity;
     stf_force_id last_force_id;
 };
 
@@ -81,6 +81,21 @@ static inline size_t stf_world_offset(const stf_world *world, size_t i)
 /* What a force sees of the blocks from first_block, their state in arrays that start with that block. */
 stf_particles stf_world_particles(const stf_world *world, size_t first_block, size_t blocks, const stf_real *position,
                                   const stf_real *velocity, stf_real *force);
+
+/* A force whose records are still to come, or all gone, is not called. */
+static inline bool stf_force_acts(const stf_added_force *added)
+{
+    return added->force->record_size == 0 || added->record_count > 0;
+}
+
+/* Whether a link force ties particles together, so that all of them have to step at once. */
+static inline bool stf_world_is_tied(const stf_world *world)
+{
+    for (size_t i = 0; i < world->force_count; i++)
+        if (world->forces[i].force->kind == STF_LINK && stf_force_acts(&world->forces[i]))
+            return true;
+    return false;
+}
 
 /* Particle `removed` is gone, particle `last` has its index. */
 void stf_world_renumber_forces(stf_world *world, size_t removed, size_t last);
