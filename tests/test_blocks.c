@@ -132,6 +132,57 @@ static void many_ticks_in_one_call_equal_one_tick_in_many(void **state)
     }
 }
 
+/* The times that forces see are ticks x step too, so that replays do not depend on the frame rate: at a step that is not exact. */
+static void groups_of_ticks_change_no_bit(void **state)
+{
+    (void)state;
+    stf_world *single = filled_world(&stf_rk4, 20, 2), *grouped = filled_world(&stf_rk4, 20, 2);
+    const unsigned groups[] = {3, 1, 7, 2, 11};
+    unsigned ticks = 0;
+
+    for (int change = 0; change < 2; change++) {
+        assert_ok(stf_world_set_step(single, change ? 1.0 / 70 : 1.0 / 60));
+        assert_ok(stf_world_set_step(grouped, change ? 1.0 / 70 : 1.0 / 60));
+        for (size_t g = 0; g < 200; g++) {
+            const unsigned group = groups[g % COUNT_OF(groups)];
+            assert_ok(stf_world_step(grouped, group));
+            for (unsigned n = 0; n < group; n++)
+                assert_ok(stf_world_step(single, 1));
+            ticks += group;
+        }
+        assert_same_particles(single, grouped);
+        assert_int_equal(stf_world_ticks(grouped), ticks);
+    }
+    stf_world_destroy(single);
+    stf_world_destroy(grouped);
+}
+
+/* The work arrays of a tied world grow with it. */
+static void tied_worlds_grow_like_others(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        stf_world *tied = filled_world(stf_integrators[k], 10, 1), *loose = filled_world(stf_integrators[k], 10, 1);
+        uint64_t seed = 5;
+
+        add_force(tied, &idle_link, NULL);
+        add_force(loose, &time_force, NULL);
+        add_force(tied, &time_force, NULL);
+        for (size_t lot = 0; lot < 5; lot++) {
+            for (size_t i = 0; i < 200; i++) {
+                const stf_particle particle = random_particle(3, &seed);
+                assert_ok(stf_world_add(tied, &particle, NULL));
+                assert_ok(stf_world_add(loose, &particle, NULL));
+            }
+            assert_ok(stf_world_step(tied, 2));
+            assert_ok(stf_world_step(loose, 2));
+            assert_same_particles(tied, loose);
+        }
+        stf_world_destroy(tied);
+        stf_world_destroy(loose);
+    }
+}
+
 /* Growing copies particles and history to other memory, with blocks of another width while they are small. */
 static void making_room_changes_no_bit(void **state)
 {
@@ -298,6 +349,8 @@ int main(void)
         cmocka_unit_test(a_particle_moves_alike_alone_and_in_every_count),
         cmocka_unit_test(block_stepping_equals_whole_world_stepping),
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
+        cmocka_unit_test(groups_of_ticks_change_no_bit),
+        cmocka_unit_test(tied_worlds_grow_like_others),
         cmocka_unit_test(making_room_changes_no_bit),
         cmocka_unit_test(ways_of_filling_a_world_are_equal),
         cmocka_unit_test(forces_are_handed_every_particle_once),

@@ -187,6 +187,76 @@ static void spring_and_drag_together_lower_the_limit(void **state)
         }
 }
 
+/* What a game may do at every tick, to the world around particle 0. */
+typedef void event(stf_world *world, unsigned tick);
+
+static void set_another(stf_world *world, unsigned tick)
+{
+    (void)tick;
+    if (stf_world_count(world) == 1)
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_ok(stf_world_set(world, 1, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}));
+}
+
+static void emit_another(stf_world *world, unsigned tick)
+{
+    (void)tick;
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+}
+
+static void emit_and_remove_another(stf_world *world, unsigned tick)
+{
+    emit_another(world, tick);
+    if (tick % 3 == 2)
+        assert_ok(stf_world_remove(world, 1, NULL));
+}
+
+static void set_equal_gravity(stf_world *world, unsigned tick)
+{
+    (void)tick;
+    assert_ok(stf_world_set_gravity(world, stf_world_gravity(world)));
+}
+
+static void tilt_gravity(stf_world *world, unsigned tick)
+{
+    assert_ok(stf_world_set_gravity(world, (stf_vector){(stf_real)(1e-9 * (double)(tick % 2)), 0, 0}));
+}
+
+static void set_equal_records(stf_world *world, unsigned tick)
+{
+    size_t count;
+    const void *records = stf_world_force_records(world, 1, &count);
+
+    (void)tick;
+    assert_ok(stf_world_set_force(world, 1, records, count));
+}
+
+/* A restart of position Verlet multiplies a spring's energy by some 1 + z^2 / 2; done at every tick, by e^5 in 1,000 at z = 0.1. */
+static void springs_stay_bounded_whatever_happens_around_them_at_every_tick(void **state)
+{
+    (void)state;
+    event *const events[] = {set_another, emit_another, emit_and_remove_another, set_equal_gravity, tilt_gravity,
+                             set_equal_records};
+    const double z = 0.1;
+
+    for (int i = 0; stf_integrators[i]; i++) {
+        if (!(stf_integrators[i]->flags & STF_SYMPLECTIC))
+            continue;
+        for (size_t e = 0; e < COUNT_OF(events); e++) {
+            stf_world *world = spring_world(stf_integrators[i], z);
+            for (unsigned tick = 0; tick < 1000; tick++) {
+                const stf_particle particle = particle_of(world, 0);
+                const double x = (double)particle.position.x, u = (double)particle.velocity.x / z;
+                /* The energy of semi-implicit Euler swings by z / 2, of the Verlet methods by up to z^2. */
+                assert_close(x * x + u * u, 1, 1.1 * z / 2);
+                events[e](world, tick);
+                assert_ok(stf_world_step(world, 1));
+            }
+            stf_world_destroy(world);
+        }
+    }
+}
+
 /* |R(i z)|^2: what a step multiplies the energy of a spring by. */
 static double energy_factor(const stf_integrator *integrator, double z)
 {
@@ -264,6 +334,7 @@ int main(void)
         cmocka_unit_test(drag_is_bounded_below_the_real_limit_and_grows_above),
         cmocka_unit_test(spring_is_bounded_below_the_imaginary_limit_and_grows_above),
         cmocka_unit_test(spring_and_drag_together_lower_the_limit),
+        cmocka_unit_test(springs_stay_bounded_whatever_happens_around_them_at_every_tick),
         cmocka_unit_test(runge_kutta_methods_gain_or_lose_the_energy_that_theory_says),
         cmocka_unit_test(symplectic_methods_keep_their_own_invariant),
     };

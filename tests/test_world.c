@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "scenes/scene.h"
@@ -602,13 +603,42 @@ static void changed_forces_act_from_the_very_next_step(void **state)
         const stf_real kept = particle_of(world, 0).velocity.y;
         assert_ok(stf_world_step(world, 8));
         assert_close(particle_of(world, 0).velocity.y, kept, 8 * REAL_EPSILON);
+        /* Position Verlet reckons a change of gravity from half a step before on. */
+        const double half_a_step = stf_integrators[k] == &stf_position_verlet ? 2 * 0.5 / 64 : 0;
         assert_ok(stf_world_set_gravity(world, (stf_vector){0, 0, 2}));
         assert_ok(stf_world_step(world, 8));
-        assert_close(particle_of(world, 0).velocity.z, 16 / 64.0, 8 * REAL_EPSILON);
+        assert_close(particle_of(world, 0).velocity.z, 16 / 64.0 + half_a_step, 8 * REAL_EPSILON);
         assert_ok(stf_world_set_gravity(world, (stf_vector){0, 0, 0}));
+        assert_ok(stf_world_step(world, 0)); /* which must not make it forget */
         assert_ok(stf_world_step(world, 8));
         assert_close(particle_of(world, 0).velocity.z, 16 / 64.0, 8 * REAL_EPSILON);
         stf_world_destroy(world);
+    }
+}
+
+/* New records count from the next step on: as in a world that starts with them. Position Verlet counts them half a step before. */
+static void changed_records_act_from_the_very_next_step(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        const stf_world_def def = {.dimensions = 1, .integrator = stf_integrators[k], .step = 1.0 / 8};
+        stf_world *changed = make_world(def), *fresh = make_world(def);
+
+        if (stf_integrators[k] != &stf_position_verlet) {
+            assert_ok(stf_world_add(changed, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+            add_force(changed, &stf_force_linear_drag, &(stf_linear_drag){0});
+            assert_ok(stf_world_step(changed, 8));
+            assert_ok(stf_world_set_force(changed, 1, &(stf_linear_drag){1}, 1));
+            assert_ok(stf_world_step(changed, 4));
+
+            assert_ok(stf_world_add(fresh, &(stf_particle){.position = {1, 0, 0}, .velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+            add_force(fresh, &stf_force_linear_drag, &(stf_linear_drag){1});
+            assert_ok(stf_world_step(fresh, 4));
+            const stf_particle p = particle_of(changed, 0), q = particle_of(fresh, 0);
+            assert_memory_equal(&p, &q, sizeof p);
+        }
+        stf_world_destroy(changed);
+        stf_world_destroy(fresh);
     }
 }
 
@@ -689,7 +719,7 @@ static void describe_names_what_there_is_and_cuts_cleanly(void **state)
     char text[4096], piece[4096];
     const size_t length = stf_world_describe(world, text, sizeof text);
     const char *const expected[] = {"2 dimensions", REAL_NAME, "3 particles", "velocity_verlet", "springs", "anchored_springs",
-                                    "linear_drag", "previous position", "radius", "bytes a particle", "passes a tick"};
+                                    "linear_drag", "previous position", "radius", "bytes a particle", "passes a step"};
 
     assert_int_equal(length, strlen(text));
     for (size_t i = 0; i < COUNT_OF(expected); i++)
@@ -788,8 +818,8 @@ static void anchored_springs_are_kept_in_one_order(void **state)
     stf_world_destroy(world);
 }
 
-/* The particle that takes the place of a removed one does not take over its acceleration. */
-static void a_moved_particle_goes_on_as_if_newly_set(void **state)
+/* The particle that takes the place of a removed one brings its history along, and does not take over the other's. */
+static void a_moved_particle_goes_on_as_if_alone(void **state)
 {
     (void)state;
     for (int k = 0; stf_integrators[k]; k++) {
@@ -799,12 +829,13 @@ static void a_moved_particle_goes_on_as_if_newly_set(void **state)
 
         assert_ok(stf_world_add(pair, &(stf_particle){.position = {5, 0, 0}, .inverse_mass = 1}, NULL));
         assert_ok(stf_world_add(pair, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+        assert_ok(stf_world_add(alone, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
         add_force(pair, &stf_force_linear_drag, &(stf_linear_drag){1});
         add_force(alone, &stf_force_linear_drag, &(stf_linear_drag){1});
         assert_ok(stf_world_step(pair, 4));
-        const stf_particle last = particle_of(pair, 1);
-        assert_ok(stf_world_add(alone, &last, NULL));
+        assert_ok(stf_world_step(alone, 4));
         assert_ok(stf_world_remove(pair, 0, &moved));
+        assert_ok(stf_world_set_force(alone, 1, &(stf_linear_drag){1}, 1)); /* has velocity Verlet accelerate anew, as removing does */
         assert_ok(stf_world_step(pair, 4));
         assert_ok(stf_world_step(alone, 4));
         const stf_particle p = particle_of(pair, 0), q = particle_of(alone, 0);
@@ -812,6 +843,107 @@ static void a_moved_particle_goes_on_as_if_newly_set(void **state)
         stf_world_destroy(pair);
         stf_world_destroy(alone);
     }
+}
+
+/* An impulse given by get and set does not make a blended position jump; a new position does not blend. */
+static void only_a_new_position_is_a_teleport(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 1, .step = 1, .keep_previous = true});
+    float x;
+
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {2, 0, 0}}, NULL));
+    assert_ok(stf_world_step(world, 1));
+    stf_particle particle = particle_of(world, 0);
+    particle.velocity.x = 4;
+    assert_ok(stf_world_set(world, 0, &particle));
+    assert_ok(stf_world_copy_positions(world, 0.5, &x, 0));
+    assert_true(x == 1);
+    particle.position.x = 3;
+    assert_ok(stf_world_set(world, 0, &particle));
+    assert_ok(stf_world_copy_positions(world, 0.5, &x, 0));
+    assert_true(x == 3);
+    stf_world_destroy(world);
+}
+
+/* Few and large moves, however the particles come in. */
+static void many_small_lots_move_the_world_seldom(void **state)
+{
+    (void)state;
+    static const stf_particle lot[100];
+    counting c = {0}, exact = {0};
+    stf_world *world = make_world((stf_world_def){.dimensions = 1, .allocator = counting_allocator(&c)});
+    stf_world *once = make_world((stf_world_def){.dimensions = 1, .allocator = counting_allocator(&exact)});
+
+    for (int n = 0; n < 1000; n++)
+        assert_ok(stf_world_add_many(world, lot, COUNT_OF(lot), NULL));
+    assert_true(c.calls < 2 + 17); /* the world, its first room, and log2(100,000) doublings */
+
+    stf_particle *all = calloc(100000, sizeof *all);
+    assert_non_null(all);
+    assert_ok(stf_world_add_many(once, all, 100000, NULL));
+    assert_true(exact.bytes < 100000 * 5 * sizeof(stf_real)); /* state and a work array: nothing to spare but the last block */
+    free(all);
+    stf_world_destroy(world);
+    stf_world_destroy(once);
+}
+
+static void forces_without_records_sleep(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.dimensions = 1});
+    stf_force_id drag, springs;
+    stf_energy energy;
+    const stf_spring spring = {0, 1, 1, 0, 0};
+
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {2, 0, 0}, .inverse_mass = 1}, NULL));
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, NULL, 0, &drag));
+    assert_ok(stf_world_add_force(world, &stf_force_springs, NULL, 0, &springs));
+    assert_true(steps_by_blocks(world));
+    assert_ok(stf_world_step(world, 1));
+    assert_ok(stf_world_energy(world, &energy));
+    assert_true(particle_of(world, 0).velocity.x == 1 && energy.potential == 0);
+
+    assert_ok(stf_world_set_force(world, springs, &spring, 1));
+    assert_false(steps_by_blocks(world));
+    assert_ok(stf_world_step(world, 1));
+    assert_above(particle_of(world, 0).velocity.x, 1);
+    assert_ok(stf_world_remove(world, 1, NULL));
+    assert_true(steps_by_blocks(world));
+    assert_ok(stf_world_step(world, 1));
+    stf_world_destroy(world);
+}
+
+/* 1 kg under 1 m^3/s^2 / r^2 from the edges of float's range: newtons and distances that float holds are enough. */
+static void attraction_reaches_to_the_edge_of_the_reals(void **state)
+{
+    (void)state;
+    const double distances[] = {1e-12, 1e-6, 1, 1e6, 1e13, 1e18}, masses[] = {1e-6, 1, 1e6};
+
+    for (size_t d = 0; d < COUNT_OF(distances); d++)
+        for (size_t m = 0; m < COUNT_OF(masses); m++) {
+            const double r = distances[d], strength = r * r; /* so that a = 1 m/s^2 */
+            stf_world *pair = make_world((stf_world_def){.dimensions = 1, .step = 1});
+            stf_world *field = make_world((stf_world_def){.dimensions = 1, .step = 1});
+            const stf_particle light = {.position = {(stf_real)r, 0, 0}, .inverse_mass = (stf_real)(1 / masses[m])};
+            const stf_particle heavy = {.inverse_mass = (stf_real)1e-6};
+            const stf_attractor attractor = {.strength = (stf_real)strength};
+            const stf_all_pairs_gravity gravity = {.gravitational_constant = (stf_real)(strength * 1e-6)};
+
+            assert_ok(stf_world_add(field, &light, NULL));
+            assert_ok(stf_world_add_force(field, &stf_force_attractor, &attractor, 1, NULL));
+            assert_ok(stf_world_step(field, 1));
+            assert_close(particle_of(field, 0).velocity.x, -1, 10 * REAL_EPSILON);
+
+            assert_ok(stf_world_add(pair, &heavy, NULL));
+            assert_ok(stf_world_add(pair, &light, NULL));
+            assert_ok(stf_world_add_force(pair, &stf_force_all_pairs_gravity, &gravity, 1, NULL));
+            assert_ok(stf_world_step(pair, 1));
+            assert_close(particle_of(pair, 1).velocity.x, -1, 10 * REAL_EPSILON);
+            stf_world_destroy(pair);
+            stf_world_destroy(field);
+        }
 }
 
 static void forces_keep_their_ids(void **state)
@@ -921,13 +1053,18 @@ int main(void)
         cmocka_unit_test(immovable_particles_have_no_gravitational_energy),
         cmocka_unit_test(the_first_non_finite_particle_is_found),
         cmocka_unit_test(changed_forces_act_from_the_very_next_step),
+        cmocka_unit_test(changed_records_act_from_the_very_next_step),
         cmocka_unit_test(particles_added_on_the_way_start_like_the_first),
         cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
         cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),
         cmocka_unit_test(records_are_replaced_by_more_by_fewer_and_by_themselves),
         cmocka_unit_test(anchored_springs_are_kept_in_one_order),
-        cmocka_unit_test(a_moved_particle_goes_on_as_if_newly_set),
+        cmocka_unit_test(a_moved_particle_goes_on_as_if_alone),
+        cmocka_unit_test(only_a_new_position_is_a_teleport),
+        cmocka_unit_test(many_small_lots_move_the_world_seldom),
+        cmocka_unit_test(forces_without_records_sleep),
+        cmocka_unit_test(attraction_reaches_to_the_edge_of_the_reals),
         cmocka_unit_test(forces_keep_their_ids),
         cmocka_unit_test(clear_empties_and_keeps_the_rest),
         cmocka_unit_test(every_scene_is_made_and_stays_finite_with_its_own_integrator),

@@ -33,8 +33,9 @@ extern "C" {
 typedef struct stf_system stf_system;
 
 /*
- * What a step advances. All arrays have `length` reals and do not overlap. Some elements belong to no particle: they are
- * 0, their acceleration is 0, and whatever a step writes there is lost.
+ * What a step advances. All arrays have `length` reals and do not overlap. Some elements belong to no particle: they start as
+ * 0 and their acceleration is always 0, so that they stay 0 under a step that treats all elements alike. A step changes what
+ * the pointers point at, never the pointers.
  */
 struct stf_system {
     size_t length;      /* reals in each array */
@@ -42,13 +43,15 @@ struct stf_system {
     stf_real *position; /* m */
     stf_real *velocity; /* m/s */
     stf_real *work[STF_WORK_ARRAYS_MAX];       /* scratch: as many as the descriptor says; undefined when a step starts */
-    stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as many as the descriptor says; kept from step to step */
-    bool history_stale; /* the history is not of the step before this one (the first step; a particle was added, removed or
-                           set; forces, gravity or the step changed): build it anew from position and velocity */
+    stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as many as the descriptor says; kept from step to step, and per particle */
+    bool history_stale; /* something came between the step before and this one. The history of a particle that was added or set
+                           is NaN; every particle's is where a force was added or removed or the integrator, the step or the
+                           substeps changed. Else only records, gravity or other particles did: kept accelerations are old */
 
     /*
-     * acceleration[i] = a(time, position, velocity)[i] in m/s^2, for all `length` elements. position and velocity may be the
-     * system's own or work arrays; acceleration is another array. Costs one call of every force.
+     * acceleration[i] = a(time, position, velocity)[i] in m/s^2, for all `length` elements. `system` is the one that the step was
+     * given, never a copy. position and velocity may be its own or work arrays; acceleration is another array. Costs one call
+     * of every force.
      */
     void (*accelerate)(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
                        stf_real *acceleration);
@@ -67,8 +70,8 @@ typedef struct stf_integrator {
     int evaluations;            /* calls of accelerate a step, once the history is built */
     int work_arrays;            /* 0 to STF_WORK_ARRAYS_MAX */
     int history_arrays;         /* 0 to STF_HISTORY_ARRAYS_MAX */
-    double real_stability;      /* largest k dt (k: linear drag over mass) that does not grow */
-    double imaginary_stability; /* largest omega dt of an undamped spring that does not grow; 0: every step grows */
+    double real_stability;      /* the k dt (k: linear drag over mass) below which nothing grows */
+    double imaginary_stability; /* the omega dt of an undamped spring below which nothing grows; 0: every step grows */
     unsigned flags;             /* STF_SYMPLECTIC | STF_REVERSIBLE */
 } stf_integrator;
 

@@ -2,7 +2,7 @@
  * world: owns the particles, joins forces and integrator, runs steps.
  *
  * Every function that takes a world refuses NULL with STF_ERROR_NULL (getters of a plain value return 0 or NULL). A
- * world is used by one thread at a time; two worlds share nothing. Calling these functions from inside a force or an
+ * world is changed by one thread at a time, and read (functions that take it const) by any number; two worlds share nothing. Calling these functions from inside a force or an
  * integrator is not allowed.
  */
 #ifndef STEADFAST_WORLD_H
@@ -44,23 +44,31 @@ STF_API size_t stf_world_count(const stf_world *world);
 /* Makes room for `capacity` particles in all. Errors: MEMORY. Cost: copies all particles if it has to grow. */
 STF_API stf_result stf_world_reserve(stf_world *world, size_t capacity);
 
-/* Adds one particle; its index goes to *index unless that is NULL. Errors: NOT_FINITE, DIMENSIONS, MASS, RADIUS, MEMORY. */
+/*
+ * Adds one particle; its index goes to *index unless that is NULL. Errors: NOT_FINITE, DIMENSIONS, MASS, RADIUS, MEMORY.
+ * Cost: a world that is full moves to twice the room. Whatever changes a world costs velocity Verlet one acceleration more in
+ * the next step, since the one that it kept is of the world before.
+ */
 STF_API stf_result stf_world_add(stf_world *world, const stf_particle *particle, size_t *index);
 
-/* Adds particles[count]: all, or none. Their indices run from *first (unless NULL). Errors as stf_world_add. */
+/* Adds particles[count]: all, or none. Their indices run from *first (unless NULL). Errors and cost as stf_world_add. */
 STF_API stf_result stf_world_add_many(stf_world *world, const stf_particle *particles, size_t count, size_t *first);
 
 /* Copies a particle out. Its radius is 0 where the world keeps none. Errors: PARTICLE. */
 STF_API stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *particle);
 
-/* Replaces a particle: a teleport, so its previous position is set as well and is not blended. Errors: PARTICLE, and as
-   stf_world_add. */
+/*
+ * Replaces a particle. A new position is a teleport: the previous one is set as well, and nothing is blended. The integrator
+ * starts afresh from this state; for position Verlet that is a step of first order, and a particle on a spring that is set at
+ * every tick gains energy. To drive a particle, make it immovable (inverse mass 0) and set its velocity: it is blended, and moves
+ * by velocity x step a tick. Errors: PARTICLE, and as stf_world_add.
+ */
 STF_API stf_result stf_world_set(stf_world *world, size_t index, const stf_particle *particle);
 
 /*
  * Removes a particle: the last one takes its index. *moved (unless NULL) gets the index that the moved particle had, which
  * is `index` itself where the removed one was the last. Records of forces are renumbered, those that name the removed
- * particle dropped. Errors: PARTICLE. Cost: one look at each record that names particles.
+ * particle dropped. Errors: PARTICLE. Cost: one look at each record that names particles, and a move of those behind a dropped one.
  */
 STF_API stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved);
 
@@ -90,8 +98,8 @@ STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force,
 
 /*
  * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where their number
- * changes, and one acceleration more in the next step of velocity Verlet, whose last one was of the old records. A force that
- * changes all the time had better compute its change from `time` in apply.
+ * changes, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so that records may
+ * change at every tick. A force that is known beforehand had better compute its change from `time` in apply.
  */
 STF_API stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *records, size_t record_count);
 
@@ -108,7 +116,8 @@ STF_API stf_force_id stf_world_force_at(const stf_world *world, size_t n);
 /* The descriptor of a force; NULL if there is no such force. */
 STF_API const stf_force *stf_world_force(const stf_world *world, stf_force_id id);
 
-/* Errors: NOT_FINITE, DIMENSIONS. gravity in m/s^2. */
+/* a = g for all but the immovable, in m/s^2 (Galilei's law). As to integrators, like stf_world_set_force. Errors: NOT_FINITE,
+   DIMENSIONS. */
 STF_API stf_result stf_world_set_gravity(stf_world *world, stf_vector gravity);
 STF_API stf_vector stf_world_gravity(const stf_world *world);
 
@@ -126,7 +135,7 @@ STF_API uint64_t stf_world_ticks(const stf_world *world);
 /* Simulated seconds: ticks x step, counted from the last change of the step, never a sum of steps. */
 STF_API double stf_world_time(const stf_world *world);
 
-/* s a tick. Errors: STEP. */
+/* s a tick. Errors: STEP. Cost, for this and the next two: the history of the integrator starts afresh, one pass over it. */
 STF_API stf_result stf_world_set_step(stf_world *world, double step);
 STF_API double stf_world_step_size(const stf_world *world);
 
@@ -134,7 +143,7 @@ STF_API double stf_world_step_size(const stf_world *world);
 STF_API stf_result stf_world_set_substeps(stf_world *world, unsigned substeps);
 STF_API unsigned stf_world_substeps(const stf_world *world);
 
-/* Errors: NULL, DESCRIPTOR, MEMORY. */
+/* Errors: NULL, DESCRIPTOR, MEMORY. Cost: a copy of the world if this integrator needs more arrays than any before. */
 STF_API stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator);
 STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
 
@@ -147,8 +156,8 @@ typedef struct stf_energy {
     double potential; /* J: uniform gravity (-m g . x) and every force that has a potential */
 } stf_energy;
 
-/* Immovable particles have no finite mass and are left out. Summed in double, in the order of indices. Cost: one pass, and
-   one a potential. */
+/* Immovable particles have no finite mass and are left out. Summed in double, in the order of indices. Cost: one pass, and one a
+   potential; all-pairs gravity's takes n (n - 1) / 2 pairs. */
 STF_API stf_result stf_world_energy(const stf_world *world, stf_energy *energy);
 
 /* momentum[3] in kg m/s, summed as above. */
@@ -158,9 +167,9 @@ STF_API stf_result stf_world_momentum(const stf_world *world, double momentum[ST
 STF_API bool stf_world_find_non_finite(const stf_world *world, size_t *index);
 
 /*
- * Writes what the world models and what each of it costs (passes a tick, bytes a particle) into text[size] as lines of
+ * Writes what the world models and what each of it costs (passes a step of the integrator, bytes a particle) into text[size] as lines of
  * aligned plain text, cut off if it is too long, always terminated. Returns the length of the whole text, as snprintf does;
- * text may be NULL if size is 0. 2,048 bytes hold some twenty forces.
+ * text may be NULL if size is 0. 4,096 bytes hold some twenty forces.
  */
 STF_API size_t stf_world_describe(const stf_world *world, char *text, size_t size);
 

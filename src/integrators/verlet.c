@@ -26,12 +26,14 @@ static void position_verlet(size_t n, stf_real *restrict x, stf_real *restrict v
     }
 }
 
-/* The difference that led here, from the Taylor series: d(n) = v(n) dt - a(n) dt^2 / 2. */
+/* The difference that led here, from the Taylor series, where there is none: d(n) = v(n) dt - a(n) dt^2 / 2. */
 static void position_verlet_start(size_t n, stf_real *restrict d, const stf_real *restrict v, const stf_real *restrict a,
                                   stf_real dt)
 {
-    for (size_t i = 0; i < n; i++)
-        d[i] = (v[i] - a[i] * (HALF * dt)) * dt;
+    for (size_t i = 0; i < n; i++) {
+        const stf_real start = (v[i] - a[i] * (HALF * dt)) * dt;
+        d[i] = d[i] == d[i] ? d[i] : start;
+    }
 }
 
 static void position_verlet_step(stf_system *system, stf_real dt)

@@ -117,7 +117,8 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
     if (no_room)
         return no_room;
 
-    world->history_stale = world->history_stale || integrator != world->integrator;
+    if (integrator != world->integrator)
+        stf_world_forget_history(world, 0, world->count);
     world->integrator = integrator;
     return STF_OK;
 }
@@ -130,6 +131,9 @@ stf_result stf_world_set_gravity(stf_world *world, stf_vector gravity)
     const stf_result bad = check_gravity(gravity, world->dimensions);
     if (bad)
         return bad;
+
+    if (gravity.x == world->gravity[0] && gravity.y == world->gravity[1] && gravity.z == world->gravity[2])
+        return STF_OK;
 
     put_gravity(world, gravity);
     world->history_stale = true;
@@ -148,7 +152,7 @@ stf_result stf_world_set_step(stf_world *world, double step)
     world->step_start_time = stf_world_time(world);
     world->step_start_tick = world->ticks;
     world->step = step;
-    world->history_stale = true;
+    stf_world_forget_history(world, 0, world->count);
     return STF_OK;
 }
 
@@ -161,7 +165,8 @@ stf_result stf_world_set_substeps(stf_world *world, unsigned substeps)
     if (!is_step(world->step, substeps))
         return STF_ERROR_STEP;
 
-    world->history_stale = world->history_stale || substeps != world->substeps;
+    if (substeps != world->substeps)
+        stf_world_forget_history(world, 0, world->count);
     world->substeps = substeps;
     return STF_OK;
 }

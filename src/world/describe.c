@@ -47,7 +47,7 @@ static void append_head(text *t, const stf_world *world)
            plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
            plural((unsigned long long)integrator->evaluations));
     if (!stf_world_is_tied(world))
-        append(t, "block by block: every pass of a tick runs in cache, memory is read and written once\n");
+        append(t, "block by block: every pass runs in cache, memory is read and written once a tick\n");
     else
         append(t, "links tie particles together: every pass runs over the whole world\n");
 }
@@ -56,28 +56,29 @@ static void append_state(text *t, const stf_world *world)
 {
     const double vector = (double)(world->dimensions * sizeof(stf_real)), real = (double)sizeof(stf_real);
     const stf_integrator *integrator = world->integrator;
-    const unsigned long long steps = world->substeps, evaluations = (unsigned long long)integrator->evaluations;
+    const unsigned long long evaluations = (unsigned long long)integrator->evaluations;
     const double work = world->storage.whole ? integrator->work_arrays * vector : 0;
 
-    append(t, "  %-32s %13s %16s\n", "", "passes a tick", "bytes a particle");
+    append(t, "  %-32s %13s %16s\n", "", "passes a step", "bytes a particle");
     append_row(t, "position, velocity, inverse mass", 0, 2 * vector + real, "");
     if (world->keep_previous)
-        append_row(t, "previous position", 1, vector, "");
+        append_row(t, "previous position", 0, vector, "one pass a tick");
     if (world->keep_radius)
         append_row(t, "radius", 0, real, "");
-    append_row(t, integrator->name, steps * evaluations, integrator->history_arrays * vector + work, "");
+    append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
     append_row(t, "gravity", 0, 0, "part of the integrator's passes, with every force's F / m");
 }
 
 static void append_force(text *t, const stf_world *world, const stf_added_force *added)
 {
     const stf_force *force = added->force;
-    const unsigned long long passes = (unsigned long long)world->substeps * (unsigned long long)world->integrator->evaluations;
+    const unsigned long long passes = stf_force_acts(added) ? (unsigned long long)world->integrator->evaluations : 0;
     const double bytes = world->count ? (double)(added->record_count * force->record_size) / (double)world->count : 0;
     char remark[96];
 
-    snprintf(remark, sizeof remark, "%s, %zu record%s, of%s%s%s%s", force->kind == STF_LINK ? "link" : "field",
-             added->record_count, plural(added->record_count), force->depends_on & STF_ON_POSITION ? " x" : "",
+    snprintf(remark, sizeof remark, "%s, %zu record%s%s%s%s%s%s", force->kind == STF_LINK ? "link" : "field",
+             added->record_count, plural(added->record_count), force->depends_on ? ", of" : "",
+             force->depends_on & STF_ON_POSITION ? " x" : "",
              force->depends_on & STF_ON_VELOCITY ? " v" : "", force->depends_on & STF_ON_TIME ? " t" : "",
              force->potential ? ", with potential" : "");
     append_row(t, force->name, passes, bytes, remark);

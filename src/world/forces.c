@@ -111,7 +111,7 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
 
     added.id = ++world->last_force_id;
     world->forces[world->force_count++] = added;
-    world->history_stale = true;
+    stf_world_forget_history(world, 0, world->count);
     if (id)
         *id = added.id;
     return STF_OK;
@@ -165,7 +165,7 @@ stf_result stf_world_remove_force(stf_world *world, stf_force_id id)
     release_records(world, added);
     world->force_count--;
     memmove(added, added + 1, (size_t)(world->forces + world->force_count - added) * sizeof *added);
-    world->history_stale = true;
+    stf_world_forget_history(world, 0, world->count);
     return STF_OK;
 }
 

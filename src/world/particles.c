@@ -2,7 +2,7 @@
 
 #include "world.h"
 
-/* A world that outgrows its room by single adds takes this many times as much. */
+/* A world that outgrows its room takes this many times as much. */
 #define GROWTH 2
 
 static stf_result check_particle(const stf_world *world, const stf_particle *particle)
@@ -38,17 +38,40 @@ static stf_vector get_vector(const stf_world *world, const stf_real *array, size
     return (stf_vector){components[0], components[1], components[2]};
 }
 
+/* All but the previous position and the history. */
 static void put_particle(stf_world *world, size_t index, const stf_particle *particle)
 {
     stf_storage *storage = &world->storage;
 
     put_vector(world, storage->position, index, particle->position);
     put_vector(world, storage->velocity, index, particle->velocity);
-    if (storage->previous)
-        put_vector(world, storage->previous, index, particle->position);
     storage->inverse_mass[index] = particle->inverse_mass;
     if (storage->radius)
         storage->radius[index] = particle->radius;
+}
+
+static void put_previous(stf_world *world, size_t index, stf_vector position)
+{
+    if (world->storage.previous)
+        put_vector(world, world->storage.previous, index, position);
+}
+
+static void move_vector(const stf_world *world, stf_real *array, size_t from, size_t to)
+{
+    put_vector(world, array, to, get_vector(world, array, from));
+    put_vector(world, array, from, (stf_vector){0, 0, 0});
+}
+
+static bool same_place(stf_vector a, stf_vector b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+/* Room for a first lot is exact; a world that outgrows it takes much more, so that many small lots do not each move it. */
+static stf_result grow(stf_world *world, size_t needed)
+{
+    const size_t capacity = world->storage.capacity;
+    const bool outgrown = needed > capacity && world->count > 0 && capacity <= SIZE_MAX / GROWTH;
+
+    return stf_storage_require(world, outgrown && needed < GROWTH * capacity ? GROWTH * capacity : needed, world->integrator,
+                               false);
 }
 
 size_t stf_world_count(const stf_world *world) { return world ? world->count : 0; }
@@ -65,16 +88,19 @@ stf_result stf_world_add_many(stf_world *world, const stf_particle *particles, s
     if (count > SIZE_MAX - world->count)
         return STF_ERROR_MEMORY;
 
-    const stf_result no_room = stf_storage_require(world, world->count + count, world->integrator, false);
+    const stf_result no_room = grow(world, world->count + count);
     if (no_room)
         return no_room;
 
     if (first)
         *first = world->count;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         put_particle(world, world->count + i, &particles[i]);
+        put_previous(world, world->count + i, particles[i].position);
+    }
+    if (count > 0)
+        stf_world_forget_history(world, world->count, count);
     world->count += count;
-    world->history_stale = world->history_stale || count > 0;
     return STF_OK;
 }
 
@@ -83,14 +109,6 @@ stf_result stf_world_add(stf_world *world, const stf_particle *particle, size_t 
     if (!world || !particle)
         return STF_ERROR_NULL;
 
-    const stf_result bad = check_particle(world, particle);
-    if (bad)
-        return bad;
-    if (world->count == world->storage.capacity && world->count <= SIZE_MAX / GROWTH) {
-        const stf_result no_room = stf_world_reserve(world, world->count * GROWTH);
-        if (no_room)
-            return no_room;
-    }
     return stf_world_add_many(world, particle, 1, index);
 }
 
@@ -122,8 +140,10 @@ stf_result stf_world_set(stf_world *world, size_t index, const stf_particle *par
     if (bad)
         return bad;
 
+    if (!same_place(particle->position, get_vector(world, world->storage.position, index)))
+        put_previous(world, index, particle->position);
     put_particle(world, index, particle);
-    world->history_stale = true;
+    stf_world_forget_history(world, index, 1);
     return STF_OK;
 }
 
@@ -135,14 +155,15 @@ stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
         return STF_ERROR_PARTICLE;
 
     const size_t last = world->count - 1;
-    stf_real *previous = world->storage.previous;
+    const stf_storage *storage = &world->storage;
     stf_particle particle;
 
     stf_world_get(world, last, &particle);
-    const stf_vector last_previous = previous ? get_vector(world, previous, last) : particle.position;
     put_particle(world, index, &particle);
-    if (previous)
-        put_vector(world, previous, index, last_previous);
+    if (storage->previous)
+        move_vector(world, storage->previous, last, index);
+    for (int k = 0; k < storage->history_arrays; k++)
+        move_vector(world, storage->history[k], last, index);
     put_particle(world, last, &(stf_particle){.inverse_mass = 0}); /* lanes without a particle are 0 */
 
     stf_world_renumber_forces(world, index, last);
@@ -164,9 +185,20 @@ stf_result stf_world_clear(stf_world *world)
     memset(storage->position, 0, lanes * world->dimensions * sizeof(stf_real));
     memset(storage->velocity, 0, lanes * world->dimensions * sizeof(stf_real));
     memset(storage->inverse_mass, 0, lanes * sizeof(stf_real));
+    for (int k = 0; k < storage->history_arrays; k++)
+        memset(storage->history[k], 0, lanes * world->dimensions * sizeof(stf_real));
     stf_world_drop_particle_records(world);
     world->count = 0;
     return STF_OK;
+}
+
+/* before + alpha (now - before), as floats that lie `bytes` apart. */
+static void copy_row(size_t n, char *to, size_t bytes, const stf_real *before, const stf_real *now, stf_real alpha)
+{
+    for (size_t i = 0; i < n; i++) {
+        const float blended = (float)(before[i] + alpha * (now[i] - before[i]));
+        memcpy(to + i * bytes, &blended, sizeof blended);
+    }
 }
 
 stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *positions, size_t stride_bytes)
@@ -180,20 +212,17 @@ stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *
     if (stride_bytes > 0 && stride_bytes < world->dimensions * sizeof(float))
         return STF_ERROR_STRIDE;
 
-    const stf_storage *storage = &world->storage;
     const size_t bytes = stride_bytes ? stride_bytes : world->dimensions * sizeof(float);
-    const stf_real blend = (stf_real)alpha;
+    const size_t stride = world->storage.stride;
+    const stf_real *now = world->storage.position, *before = alpha < 1 ? world->storage.previous : now;
 
-    for (size_t i = 0; i < world->count; i++) {
-        const size_t at = stf_world_offset(world, i);
-        float vertex[STF_DIMENSIONS_MAX];
-
+    for (size_t first = 0; first < world->count; first += stride) {
+        const size_t n = world->count - first < stride ? world->count - first : stride;
         for (unsigned d = 0; d < world->dimensions; d++) {
-            const stf_real now = storage->position[at + d * storage->stride];
-            const stf_real before = storage->previous && alpha < 1 ? storage->previous[at + d * storage->stride] : now;
-            vertex[d] = (float)(alpha < 1 ? before + blend * (now - before) : now);
+            const size_t row = stf_world_offset(world, first) + d * stride;
+            copy_row(n, (char *)positions + first * bytes + d * sizeof(float), bytes, before + row, now + row,
+                     (stf_real)alpha);
         }
-        memcpy((char *)positions + i * bytes, vertex, world->dimensions * sizeof(float));
     }
     return STF_OK;
 }

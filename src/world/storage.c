@@ -49,14 +49,14 @@ static void copy_array(stf_real *to, const stf_storage *to_storage, const stf_re
         memcpy(to + row * to_storage->stride, from + row * from_storage->stride, count * sizeof(stf_real));
 }
 
-static void copy_storage(stf_storage *to, const stf_storage *from, size_t dimensions, size_t count, bool with_history)
+static void copy_storage(stf_storage *to, const stf_storage *from, size_t dimensions, size_t count)
 {
     copy_array(to->position, to, from->position, from, dimensions, count);
     copy_array(to->velocity, to, from->velocity, from, dimensions, count);
     copy_array(to->previous, to, from->previous, from, dimensions, count);
     copy_array(to->inverse_mass, to, from->inverse_mass, from, 1, count);
     copy_array(to->radius, to, from->radius, from, 1, count);
-    for (int k = 0; with_history && k < to->history_arrays; k++)
+    for (int k = 0; k < to->history_arrays; k++)
         copy_array(to->history[k], to, from->history[k], from, dimensions, count);
 }
 
@@ -95,7 +95,7 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
 
     memset(new.memory, 0, new.bytes);
     lay_out(&new, world);
-    copy_storage(&new, old, world->dimensions, world->count, integrator == world->integrator);
+    copy_storage(&new, old, world->dimensions, world->count);
     stf_storage_release(world);
     world->storage = new;
     return STF_OK;
@@ -105,6 +105,17 @@ void stf_storage_release(stf_world *world)
 {
     stf_allocator_release(&world->allocator, world->storage.memory, world->storage.bytes);
     world->storage = (stf_storage){0};
+}
+
+void stf_world_forget_history(stf_world *world, size_t first, size_t count)
+{
+    const stf_storage *storage = &world->storage;
+
+    for (int k = 0; k < storage->history_arrays; k++)
+        for (size_t i = first; i < first + count; i++)
+            for (unsigned d = 0; d < world->dimensions; d++)
+                storage->history[k][stf_world_offset(world, i) + d * storage->stride] = (stf_real)NAN;
+    world->history_stale = true;
 }
 
 stf_particles stf_world_particles(const stf_world *world, size_t first_block, size_t blocks, const stf_real *position,

@@ -9,6 +9,7 @@
 /* Names of these functions for the second precision; the public ones are in precision.h. */
 #ifdef STF_DOUBLE
 #define stf_storage_require stf_storage_require_f64
+#define stf_world_forget_history stf_world_forget_history_f64
 #define stf_storage_release stf_storage_release_f64
 #define stf_world_particles stf_world_particles_f64
 #define stf_world_renumber_forces stf_world_renumber_forces_f64
@@ -71,6 +72,9 @@ static inline size_t stf_world_blocks(const stf_world *world)
 
 /* Reals of a block in an array of vectors. */
 static inline size_t stf_world_block_length(const stf_world *world) { return world->storage.stride * world->dimensions; }
+
+/* Marks the history of `count` particles from `first` as none: NaN in every component. */
+void stf_world_forget_history(stf_world *world, size_t first, size_t count);
 
 /* Where the first component of particle i stands in an array of vectors. */
 static inline size_t stf_world_offset(const stf_world *world, size_t i)
