@@ -125,7 +125,8 @@ $(BUILD)/$(LINK_NAME): $(SHARED)
 demo: $(DEMO)
 
 run: $(DEMO)
-	$(DEMO)
+	@mkdir -p $(BUILD)/pictures
+	$(DEMO) --out $(BUILD)/pictures
 
 # The pictures of the README.
 pictures: $(DEMO)

@@ -71,7 +71,7 @@ static stf_result populate(stf_world *world)
 
 const scene scene_cloth = {
     .name = "cloth",
-    .title = "A cloth of 32 x 32 masses",
+    .title = "A damped cloth, 32 × 32 masses",
     .length_unit = "m",
     .time_unit = "s",
     .dimensions = 3,

@@ -25,7 +25,7 @@ static bool exact(size_t particle, double time, double position[3], double veloc
 
 const scene scene_drag = {
     .name = "drag",
-    .title = "Linear drag, k = 0.8",
+    .title = "Linear drag, k = 0.8 kg/s",
     .length_unit = "m",
     .time_unit = "s",
     .dimensions = 1,

@@ -29,7 +29,7 @@ static stf_result populate(stf_world *world)
 
 const scene scene_rope = {
     .name = "rope",
-    .title = "A rope of 31 springs",
+    .title = "A damped rope of 31 springs",
     .length_unit = "m",
     .time_unit = "s",
     .dimensions = 2,

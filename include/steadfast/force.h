@@ -17,9 +17,30 @@
  *     ...
  *     stf_world_add_force(world, &wind_force, &(wind){.push = 2}, 1, NULL);
  *
- * A field force looks at each particle by itself and is handed one block at a time. A link force ties particles together
- * and is handed the whole world. A world with no link force steps block by block, all stages of a block in cache; one
- * link force makes it pass over all particles for each stage.
+ * A field force looks at each particle by itself and is handed one block at a time. A link force (STF_LINK) ties particles
+ * together and is handed the whole world, where stf_particles_offset finds a particle:
+ *
+ *     typedef struct tether { uint32_t a, b; stf_real pull; } tether;       // N, whatever the distance, in one dimension
+ *     static void haul(const void *records, size_t record_count, const stf_particles *all, double time)
+ *     {
+ *         const tether *t = records;
+ *         (void)time;
+ *         for (size_t r = 0; r < record_count; r++) {
+ *             const size_t a = stf_particles_offset(all, t[r].a), b = stf_particles_offset(all, t[r].b);
+ *             const stf_real pull = all->position[a] < all->position[b] ? t[r].pull : -t[r].pull;
+ *             all->force[a] += pull;
+ *             all->force[b] -= pull;
+ *         }
+ *     }
+ *     static double hauled(const void *records, size_t record_count, const stf_particles *all, double time)
+ *     {
+ *         ...sum of t[r].pull * fabs(distance), in J: the potential
+ *     }
+ *     const stf_force tether_force = {.name = "tether", .kind = STF_LINK, .record_size = sizeof(tether), .apply = haul,
+ *                                     .potential = hauled, .depends_on = STF_ON_POSITION};
+ *
+ * A world with no link force steps block by block, all stages of a block in cache; one link force makes it pass over all
+ * particles for each stage.
  *
  * Uniform gravity is no force but a part of the world (stf_world_def.gravity): it costs no loop.
  */
@@ -38,12 +59,13 @@ typedef enum stf_force_kind { STF_FIELD, STF_LINK } stf_force_kind;
 enum { STF_ON_POSITION = 1 << 0, STF_ON_VELOCITY = 1 << 1, STF_ON_TIME = 1 << 2 };
 
 typedef struct stf_force {
-    const char *name;
-    stf_force_kind kind;
+    const char *name; /* required */
+    stf_force_kind kind; /* 0: STF_FIELD */
     unsigned depends_on; /* STF_ON_POSITION | STF_ON_VELOCITY | STF_ON_TIME */
     size_t record_size;  /* bytes of one parameter record; 0: the force has no parameters */
 
-    /* Adds newtons to particles->force. records: [record_count], the world's copy. time in s. Required. */
+    /* Adds newtons to particles->force. records: [record_count], the world's copy. time in s. Required. A force that has
+       parameters is not called while it has no records. */
     void (*apply)(const void *records, size_t record_count, const stf_particles *particles, double time);
 
     /* The potential energy of these particles in J, at the same arguments. NULL: none, and energies go without it. */
@@ -77,7 +99,8 @@ STF_API extern const stf_force stf_force_quadratic_drag;
 /*
  * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential
  * -m mu / sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the
- * force is 0. Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing.
+ * force is 0. Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float, distances
+ * from 1e-18 to 1e18 m work, as long as the newtons are a float.
  */
 typedef struct stf_attractor {
     stf_vector position; /* m */
@@ -88,8 +111,9 @@ STF_API extern const stf_force stf_force_attractor;
 
 /*
  * A damped spring from a particle to a fixed point: F = -(k (l - l0) + c (v . u)) u, d = x - anchor, l = |d|, u = d / l;
- * potential k (l - l0)^2 / 2. Hooke's law with a damper along the spring. Where l = 0 the spring has no direction
- * and the force is 0. A field force: it ties no two particles. Cost: some ten operations a record.
+ * potential k (l - l0)^2 / 2. Hooke's law (De potentia restitutiva, 1678) with a damper along the spring (Witkin and Baraff,
+ * Physically Based Modeling, 1997). Where l = 0 the spring has no direction and the force is 0. A field force: it ties no two
+ * particles. The records are kept sorted. Cost: some ten operations a record; adding or setting n records sorts them.
  */
 typedef struct stf_anchored_spring {
     uint32_t particle;    /* index */
@@ -102,8 +126,10 @@ STF_API extern const stf_force stf_force_anchored_springs;
 
 /*
  * A damped spring between two particles: on a F = -(k (l - l0) + c ((v_a - v_b) . u)) u, d = x_a - x_b, l = |d|,
- * u = d / l, on b the opposite; potential k (l - l0)^2 / 2. Where l = 0 the force is 0. A link force.
- * Removing a particle drops its springs. Cost: a gather and a scatter of both ends a record.
+ * u = d / l, on b the opposite; potential k (l - l0)^2 / 2; sources as above. Where l = 0 the force is 0. A link force.
+ * Removing a particle drops its springs. Springs that are not compressed swing no faster than omega = sqrt(2 K / m), K the sum of
+ * the stiffnesses at a particle and m its mass, where that is largest (Gershgorin's bound; in a chain 2 sqrt(k / m)): omega dt has
+ * to stay below the integrator's limit. Cost: a gather and a scatter of both ends a record.
  */
 typedef struct stf_spring {
     uint32_t a, b;        /* indices; not the same */
