@@ -158,7 +158,8 @@ test: $(TESTS) library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
-	@$(HAVE_CMOCKA) || { echo "steadfast: the tests need cmocka: type: make deps" >&2; exit 1; }
+	@$(HAVE_CMOCKA) && command -v "$${CXX:-c++}" >/dev/null || \
+	    { echo "steadfast: the tests need cmocka and a C++ compiler: type: make deps" >&2; exit 1; }
 
 $(BUILD)/f32/tests/%.o: tests/%.c Makefile | need-cmocka
 	@mkdir -p $(@D)

@@ -9,8 +9,6 @@
 
 #define WINDOW_WIDTH 1280
 #define WINDOW_HEIGHT 720
-#define WINDOW_WIDTH_MIN 800
-#define WINDOW_HEIGHT_MIN 520
 #define HUD_PERIOD 0.15     /* s */
 #define MESSAGE_SECONDS 3.0
 #define DEFAULT_REFRESH 60  /* Hz, where the display doesn't say */
@@ -131,7 +129,7 @@ static void advance(app *a, double seconds)
     a->frame.message = a->message_seconds > 0 ? a->message : NULL;
     a->hud_age += seconds;
     if (a->hud_age >= HUD_PERIOD) {
-        hud_refresh(&a->frame.hud, &a->session);
+        figures_of_session(&a->frame.figures, &a->session, false);
         a->hud_age = 0;
     }
 }
@@ -151,7 +149,7 @@ static int loop(app *a)
     const double period = a->session.display_period > 0 ? a->session.display_period : 1.0 / DEFAULT_REFRESH;
     Uint64 before = SDL_GetPerformanceCounter();
 
-    hud_refresh(&a->frame.hud, &a->session);
+    figures_of_session(&a->frame.figures, &a->session, false);
     for (a->running = true; a->running;) {
         const Uint64 now = SDL_GetPerformanceCounter();
         SDL_Event event;
@@ -179,7 +177,7 @@ static bool open_window(app *a, const options *o)
                                  SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
     if (!a->window)
         return false;
-    SDL_SetWindowMinimumSize(a->window, WINDOW_WIDTH_MIN, WINDOW_HEIGHT_MIN);
+    SDL_SetWindowMinimumSize(a->window, WIDTH_MIN, HEIGHT_MIN);
     a->renderer = SDL_CreateRenderer(a->window, -1, SDL_RENDERER_PRESENTVSYNC);
     a->canvas = a->renderer ? canvas_create(a->renderer, SAMPLES_QUICK) : NULL;
     return a->canvas && canvas_begin(a->canvas);

@@ -7,7 +7,7 @@
 
 #define LAYOUT_WIDTH 1280.0f
 #define LAYOUT_HEIGHT 720.0f
-#define UNIT_MIN 0.5f
+#define UNIT_MIN (10.0f / 12) /* has the small font, nominally 12, 10 px high */
 
 canvas *canvas_create(SDL_Renderer *renderer, int samples)
 {

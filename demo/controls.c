@@ -1,12 +1,14 @@
 #include "controls.h"
 
-#include <stdio.h>
+#include <math.h>
 
 #define PICK_REACH 30.0 /* layout length from the pointer to a particle */
 #define ZOOM_PER_NOTCH 1.15
 #define SPEED_MIN (1.0 / 64)
 #define SPEED_MAX 64.0
 #define SUBSTEPS_MAX 4096u
+#define STEP_RANGE_DOWN 1024
+#define STEP_RANGE_UP 64
 
 /* ---- keys ---------------------------------------------------------------------------------------------------------------- */
 
@@ -31,9 +33,16 @@ static void change_speed(app *a, double factor)
 static void change_step(app *a, double factor)
 {
     settings chosen = a->session.settings;
+    const double least = chosen.scene->step / STEP_RANGE_DOWN, most = chosen.scene->step * STEP_RANGE_UP;
+    const double before = chosen.step, wanted = before * factor;
 
-    chosen.step *= factor;
-    app_restart(a, &chosen);
+    chosen.step = fmax(least, fmin(most, wanted));
+    if (chosen.step != before)
+        app_restart(a, &chosen);
+    if (chosen.step != wanted)
+        app_say(a, factor < 1 ? "shortest step: 1/1024 of the scene's own" : "longest step: 64 times the scene's own");
+    else if (chosen.scene == &scene_drag)
+        app_say(a, "the four plots keep their steps");
 }
 
 static void change_substeps(app *a, int by)

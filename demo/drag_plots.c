@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #define GAP 12.0f          /* layout length between plots */
-#define MOST_VELOCITY 1.25 /* of the axis, in speeds at the start */
+#define MOST_VELOCITY 1.4  /* of the axis, in speeds at the start */
 #define EXACT_POINTS 200
 #define SAME_STEP 1e-6     /* relative */
 
@@ -74,71 +74,83 @@ static void draw_curve(canvas *c, const plot *p, const drag_curve *curve, bool g
     canvas_clip(c, NULL);
 }
 
-static bool is_step(double step, double of_plot) { return fabs(step - of_plot) <= SAME_STEP * of_plot; }
-
-static bool has_marker(const session *s, size_t plot_index)
-{
-    for (size_t i = 0; i < DRAG_PLOTS; i++)
-        if (is_step(s->settings.step, plot_steps[i]))
-            return i == plot_index;
-    return true;
-}
-
 static void draw_marker(canvas *c, const plot *p, const session *s)
 {
+    const double gap = 6 * (double)c->unit, time = stf_world_time(s->main.world);
     stf_particle particle;
 
-    if (stf_world_get(s->main.world, 0, &particle) || !isfinite(particle.velocity.x))
+    if (time > p->x.to || stf_world_get(s->main.world, 0, &particle) || !isfinite(particle.velocity.x))
         return;
-    const point at = plot_at(p, stf_world_time(s->main.world), (double)particle.velocity.x);
-    canvas_clip(c, &p->area);
-    draw_line(c, at.x, (double)p->area.y, at.x, (double)(p->area.y + p->area.h), c->unit, faded(COLOUR_MARKER, 0.5));
-    draw_ring(c, at.x, at.y, 7 * c->unit, 2 * c->unit, COLOUR_MARKER);
-    canvas_clip(c, NULL);
+    const point at = plot_at(p, time, (double)particle.velocity.x);
+    const bool right = time < (p->x.from + p->x.to) / 2; /* of the line there is room */
+    const double top = (double)p->area.y, bottom = top + (double)p->area.h;
+    draw_line(c, at.x, top, at.x, bottom, c->unit, faded(COLOUR_MARKER, 0.5));
+    if (at.y > top && at.y < bottom)
+        draw_ring(c, at.x, at.y, 7 * c->unit, 2 * c->unit, COLOUR_MARKER);
+    draw_text(c, TEXT_SMALL, right ? ALIGN_LEFT : ALIGN_RIGHT, at.x + (right ? gap : -gap), top, COLOUR_MARKER, "now");
 }
 
-static void draw_title(canvas *c, const plot *p, const session *s, size_t plot_index)
+static void format_title(char *title, size_t size, double step, unsigned substeps)
 {
-    const unsigned substeps = s->settings.substeps;
-    char title[64];
-    int length = snprintf(title, sizeof title, "Δt = %.1f s", plot_steps[plot_index]);
+    const int length = snprintf(title, size, "Δt = %.1f s", step);
 
     if (substeps > 1)
-        snprintf(title + length, sizeof title - (size_t)length, " ÷ %u", substeps);
-    plot_axes(c, p, title);
+        snprintf(title + length, size - (size_t)length, " ÷ %u", substeps);
 }
 
-static void draw_error(canvas *c, const plot *p, const scene *of, const drag_curve *curve)
+static double largest_error(const scene *of, const drag_curve *curve)
 {
     double largest = 0, position[3], velocity[3];
-    char number[32], text[64];
 
     for (size_t i = 0; i < curve->count; i++)
         if (of->exact(0, curve->points[i].x, position, velocity))
             largest = fmax(largest, fabs(curve->points[i].y - velocity[0]));
-    format_number(number, sizeof number, largest);
+    return largest;
+}
+
+/* In the line-th line above the plot, beside a title in the first; in few words where it is narrow. */
+static void draw_error(canvas *c, const plot *p, const char *title, double error, int line, SDL_Color colour)
+{
+    const font *f = &c->fonts[TEXT_SMALL];
+    const double u = (double)c->unit, right = (double)(p->area.x + p->area.w);
+    const double room = right - p->left - font_width(&c->fonts[TEXT_BODY], title) - 12 * u;
+    char number[32], text[64];
+
+    format_number(number, sizeof number, error);
     snprintf(text, sizeof text, "largest error %s m/s", number);
-    draw_text(c, TEXT_SMALL, ALIGN_RIGHT, (double)(p->area.x + p->area.w),
-              (double)p->area.y - c->fonts[TEXT_SMALL].height - 5 * (double)c->unit, COLOUR_MAIN, text);
+    if (font_width(f, text) > room)
+        snprintf(text, sizeof text, "%s m/s", number);
+    draw_text(c, TEXT_SMALL, ALIGN_RIGHT, right, (double)p->area.y - line * f->height - 5 * u, colour, text);
+}
+
+static void draw_errors(canvas *c, const plot *p, const char *title, const scene *of, const drag_curve *curve,
+                        const drag_curve *ghost)
+{
+    draw_error(c, p, title, largest_error(of, curve), ghost->count > 0 ? 2 : 1, COLOUR_MAIN);
+    if (ghost->count > 0)
+        draw_error(c, p, title, largest_error(of, ghost), 1, COLOUR_GHOST);
 }
 
 void drag_plots_draw(canvas *c, const drag_plots *d, const session *s, SDL_FRect box)
 {
     const scene *of = s->settings.scene;
     const float gap = GAP * c->unit, w = (box.w - gap) / 2, h = (box.h - gap) / 2;
-    const axis time = {.from = 0, .to = of->duration * 1.02, .tick = 2, .label = "t, s"};
+    const axis time = {.from = 0, .to = of->duration * 1.04, .tick = 2, .label = "t, s"};
     const axis velocity = {.from = -MOST_VELOCITY, .to = MOST_VELOCITY, .tick = 0.5, .label = "v, m/s"};
 
     for (size_t i = 0; i < DRAG_PLOTS; i++) {
         const SDL_FRect cell = {box.x + (float)(i % 2) * (w + gap), box.y + (float)(i / 2) * (h + gap), w, h};
         const plot p = plot_make(c, cell, time, velocity);
 
-        draw_title(c, &p, s, i);
-        draw_error(c, &p, of, &d->main[i]);
+        char title[64];
+
+        format_title(title, sizeof title, plot_steps[i], s->settings.substeps);
+        plot_axes(c, &p, title);
+        draw_errors(c, &p, title, of, &d->main[i], &d->ghost[i]);
         draw_exact(c, &p, of);
         draw_curve(c, &p, &d->ghost[i], true);
         draw_curve(c, &p, &d->main[i], false);
-        if (has_marker(s, i))
+        if (fabs(s->settings.step - plot_steps[i]) <= SAME_STEP * plot_steps[i])
             draw_marker(c, &p, s);
     }
 }

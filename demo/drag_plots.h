@@ -23,7 +23,7 @@ typedef struct drag_plots {
 /* Runs the worlds of all plots with the integrators and substeps of these settings. */
 stf_result drag_plots_run(drag_plots *d, const settings *chosen);
 
-/* With a marker for the session's own world in the plot of its step, or in all plots if none has it. */
+/* With a marker for the session's own world in the plot of its step, if there is one. */
 void drag_plots_draw(canvas *c, const drag_plots *d, const session *s, SDL_FRect box);
 
 #endif

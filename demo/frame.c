@@ -38,10 +38,10 @@ bool frame_draw(canvas *c, const frame *f, session *s)
     if (f->hand && f->hand->active)
         stage_draw_hand(c, s, &view, f->hand);
     stage_legend(c, s, (double)(view.area.x + view.area.w - 4 * c->unit), (double)(view.area.y + 2 * c->unit));
-    const double free_y = f->show_hud ? hud_draw(c, &f->hud, s) : (double)view.area.y;
-    hud_draw_messages(c, s, free_y, f->message);
+    const double free_y = f->show_hud ? hud_draw(c, &f->figures, s) : (double)view.area.y;
+    hud_draw_messages(c, s, free_y, f->still, f->message);
     if (f->show_hints)
-        hud_draw_hints(c);
+        hud_draw_hints(c, s);
     if (f->show_help)
         hud_draw_help(c);
     return canvas_end(c);
@@ -70,7 +70,8 @@ bool frame_save(frame *f, session *s, int width, int height, const char *path)
     SDL_Renderer *renderer = surface ? SDL_CreateSoftwareRenderer(surface) : NULL;
     canvas *c = renderer ? canvas_create(renderer, width * height > FINE_PIXELS_MAX ? SAMPLES_QUICK : SAMPLES_FINE) : NULL;
 
-    hud_refresh(&f->hud, s);
+    f->still = true;
+    figures_of_session(&f->figures, s, true);
     const bool drawn = c && frame_draw(c, f, s);
     if (drawn)
         SDL_RenderPresent(renderer);

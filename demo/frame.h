@@ -11,8 +11,9 @@
 
 typedef struct frame {
     look look;
-    hud hud;
+    figures figures; /* kept, so that they can be renewed less often than drawn: digits that flicker can't be read */
     drag_plots plots; /* of the drag scene only */
+    bool still; /* no window: time and keys mean nothing */
     bool show_hud, show_hints, show_help;
     const char *message; /* or NULL */
     const grab *hand;    /* or NULL */

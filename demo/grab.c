@@ -134,5 +134,5 @@ stf_result grab_end(grab *g, session *s)
         const stf_result ghost_bad = stf_world_remove_force(s->ghost.world, held.ghost_force);
         bad = bad ? bad : ghost_bad;
     }
-    return bad ? bad : session_rebase_energy(s);
+    return bad;
 }

@@ -9,6 +9,7 @@
 #include "frame.h"
 
 #define PATH_MAX_LENGTH 4096
+#define LOSS_TEXT 160
 #define PICTURE_PART 0.6 /* of a scene's duration: late enough to tell integrators apart */
 
 static int fail(const char *what, const char *why)
@@ -72,45 +73,47 @@ static int run_with_csv(session *s, uint64_t ticks, const char *path)
 
 /* ---- the summary --------------------------------------------------------------------------------------------------------- */
 
-static void print_actor(const session *s, const actor *a)
+/* A row without a label goes on from the one above. */
+static void print_measured(const session *s, const actor *a)
 {
-    const scene *of = s->settings.scene;
-    const double error = scene_error(of, a->world);
-    double energy = 0, change = 0;
+    char loss[LOSS_TEXT];
+    figures f = {0};
 
-    if (actor_energy(a, &energy, &change) == STF_OK && of->conserves_energy)
-        printf("energy error  %.3e of the energy at the start\n", change);
-    else if (isfinite(energy))
-        printf("energy        %.6g J, %.6g J at the start\n", energy, a->start_energy);
-    else
-        printf("energy        not finite\n");
-    if (of->exact)
-        printf("error         %.3e %s, %.3g %% of the scene's size\n", error, of->length_unit, 100 * error / of->size);
-    else
-        printf("error         no exact solution\n");
-    if (a->lost)
-        printf("lost          particle %lu left the finite numbers at tick %llu\n", (unsigned long)a->lost_particle,
-               (unsigned long long)stf_world_ticks(a->world));
+    figures_add_measured(&f, s, a);
+    for (int i = 0; i < f.count; i++)
+        if (f.rows[i].label[0])
+            printf("%s%-15s %s", i > 0 ? "\n" : "", f.rows[i].label, f.rows[i].value);
+        else
+            printf(", %s", f.rows[i].value);
+    printf("\n");
+    if (a->lost) {
+        format_loss(loss, sizeof loss, s, a);
+        printf("lost            %s: the step is too long for this integrator here\n", loss);
+    }
+}
+
+static void print_integrator(const char *label, const stf_integrator *integrator)
+{
+    char order[FIGURE_TEXT];
+
+    format_order(order, sizeof order, integrator);
+    printf("%-15s %s, order %s\n", label, integrator->name, order);
 }
 
 static void print_summary(const session *s)
 {
     const scene *of = s->settings.scene;
-    const stf_integrator *integrator = s->settings.integrator;
 
-    printf("scene         %s: %s\n", of->name, of->title);
-    printf("integrator    %s, order %d\n", integrator->name, integrator->order);
-    printf("step          %.9g %s, %u substep%s\n", s->settings.step, of->time_unit, s->settings.substeps,
+    printf("scene           %s: %s\n", of->name, of->title);
+    print_integrator("integrator", s->settings.integrator);
+    printf("step            %.9g %s, %u substep%s\n", s->settings.step, of->time_unit, s->settings.substeps,
            s->settings.substeps == 1 ? "" : "s");
-    printf("ticks         %llu\n", (unsigned long long)stf_world_ticks(s->main.world));
-    printf("time          %.9g %s\n", stf_world_time(s->main.world), of->time_unit);
-    print_actor(s, &s->main);
-    if (s->cost_count > 0)
-        printf("cost          %.3g ns a particle a step\n", session_cost(s));
+    printf("time            %.9g %s, %llu ticks\n", stf_world_time(s->main.world), of->time_unit,
+           (unsigned long long)stf_world_ticks(s->main.world));
+    print_measured(s, &s->main);
     if (s->ghost.world) {
-        printf("ghost         %s, order %d\n", s->settings.ghost->name, s->settings.ghost->order);
-        print_actor(s, &s->ghost);
-        printf("apart         %.3e %s, root mean square\n", session_ghost_distance(s), of->length_unit);
+        print_integrator("ghost", s->settings.ghost);
+        print_measured(s, &s->ghost);
     }
 }
 

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE_MIN 320   /* px of a picture */
-#define SIDE_MAX 8192
+#define SIDE_MAX 8192 /* px */
 #define SUBSTEPS_MAX 1000000
 #define TICKS_MAX 1000000000000ULL
 
@@ -110,14 +109,14 @@ static bool take_size(options *o, const char *value)
     char width[8] = "", height[8] = "", rest;
     uint64_t w, h;
 
-    if (sscanf(value, "%7[0-9]x%7[0-9]%c", width, height, &rest) == 2 && read_whole(width, SIDE_MIN, SIDE_MAX, &w) &&
-        read_whole(height, SIDE_MIN, SIDE_MAX, &h)) {
+    if (sscanf(value, "%7[0-9]x%7[0-9]%c", width, height, &rest) == 2 && read_whole(width, WIDTH_MIN, SIDE_MAX, &w) &&
+        read_whole(height, HEIGHT_MIN, SIDE_MAX, &h)) {
         o->width = (int)w;
         o->height = (int)h;
         return true;
     }
-    fprintf(stderr, "demo: --size wants WIDTHxHEIGHT such as 1280x720, each from %d to %d, not \"%s\"\n", SIDE_MIN,
-            SIDE_MAX, value);
+    fprintf(stderr, "demo: --size wants WIDTHxHEIGHT such as 1280x720, from %dx%d to %dx%d, not \"%s\"\n", WIDTH_MIN,
+            HEIGHT_MIN, SIDE_MAX, SIDE_MAX, value);
     return false;
 }
 
@@ -228,6 +227,6 @@ void options_print_list(void)
                (*each)->integrator->name);
     printf("integrators\n");
     for (const stf_integrator *const *each = stf_integrators; *each; each++)
-        printf("  %-20s order %d, %d evaluation%s a step\n", (*each)->name, (*each)->order, (*each)->evaluations,
+        printf("  %-20s order %d, %d acceleration%s a step\n", (*each)->name, (*each)->order, (*each)->evaluations,
                (*each)->evaluations == 1 ? "" : "s");
 }

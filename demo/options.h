@@ -6,6 +6,10 @@
 
 typedef enum run_mode { MODE_WINDOW, MODE_HEADLESS, MODE_PICTURES, MODE_LIST, MODE_HELP } run_mode;
 
+/* px. A window or picture that is smaller has no room for figures that can be read. */
+#define WIDTH_MIN 800
+#define HEIGHT_MIN 520
+
 enum { EXIT_USAGE = 2 }; /* beside EXIT_SUCCESS and EXIT_FAILURE */
 
 typedef struct options {

@@ -5,7 +5,7 @@
 /* Layout lengths around the area. */
 #define LEFT 56.0f
 #define RIGHT 10.0f
-#define ABOVE 26.0f
+#define ABOVE 42.0f /* two lines of text */
 #define BELOW 30.0f
 #define TICK_GAP 6.0
 
@@ -14,6 +14,7 @@ plot plot_make(const canvas *c, SDL_FRect box, axis x, axis y)
     const float u = c->unit;
 
     return (plot){.area = {box.x + LEFT * u, box.y + ABOVE * u, box.w - (LEFT + RIGHT) * u, box.h - (ABOVE + BELOW) * u},
+                  .left = (double)box.x,
                   .x = x,
                   .y = y};
 }
@@ -29,13 +30,16 @@ static SDL_Color grid_colour(long n) { return n == 0 ? faded(COLOUR_MUTED, 0.8) 
 static void draw_x_ticks(canvas *c, const plot *p)
 {
     const double top = (double)p->area.y, bottom = top + (double)p->area.h;
+    const font *f = &c->fonts[TEXT_SMALL];
+    const double label_left = (double)(p->area.x + p->area.w) - font_width(f, p->x.label) - TICK_GAP * (double)c->unit;
     char text[32];
 
     for (long n = (long)ceil(p->x.from / p->x.tick); (double)n * p->x.tick <= p->x.to; n++) {
         const double x = plot_at(p, (double)n * p->x.tick, 0).x;
         draw_line(c, x, top, x, bottom, c->unit, grid_colour(n));
         format_number(text, sizeof text, (double)n * p->x.tick);
-        draw_text(c, TEXT_SMALL, ALIGN_CENTRE, x, bottom + TICK_GAP * (double)c->unit, COLOUR_MUTED, text);
+        if (x + font_width(f, text) / 2.0 < label_left)
+            draw_text(c, TEXT_SMALL, ALIGN_CENTRE, x, bottom + TICK_GAP * (double)c->unit, COLOUR_MUTED, text);
     }
 }
 
@@ -60,7 +64,7 @@ void plot_axes(canvas *c, const plot *p, const char *title)
 
     draw_x_ticks(c, p);
     draw_y_ticks(c, p);
-    draw_text(c, TEXT_BODY, ALIGN_LEFT, left, title_y, COLOUR_TEXT, title);
+    draw_text(c, TEXT_BODY, ALIGN_LEFT, p->left, title_y, COLOUR_TEXT, title);
     draw_text(c, TEXT_SMALL, ALIGN_RIGHT, left - TICK_GAP * u, (double)p->area.y, COLOUR_MUTED, p->y.label);
     draw_text(c, TEXT_SMALL, ALIGN_RIGHT, right, (double)(p->area.y + p->area.h) + TICK_GAP * u, COLOUR_MUTED, p->x.label);
 }

@@ -12,6 +12,7 @@ typedef struct axis {
 
 typedef struct plot {
     SDL_FRect area; /* px, inside the axes */
+    double left;    /* px, of the title */
     axis x, y;
 } plot;
 

@@ -7,61 +7,18 @@
 #define LONGEST_FRAME 0.25 /* s that one frame may make up for; what is longer is dropped */
 #define MOST_WORK 1e6      /* particle steps that one frame may take: some 50 ms of them */
 #define WORK_OF_TICK 8.0   /* what a tick of no particles would cost, in particle steps */
-#define TRAIL_SECONDS 5.0  /* that a trail reaches back, at the scene's own time scale */
-#define TRAIL_SECONDS_OF_MANY 0.5
-#define MANY_TRAILS 8
+#define EVERY_TICK_MOST 64 /* particles of a world whose energy is cheap enough to be looked at every tick */
+#define WHOLE_TICK 1e-6    /* ticks: a duration this little short of a whole number has all of them */
+#define TICKS_MOST 1e15    /* what takes longer never ends */
 #define NANOSECONDS 1e9
 #define OVERHEAD_TRIES 8
-
-static void close_actor(actor *a)
-{
-    stf_world_destroy(a->world);
-    trail_close(&a->trail);
-    free(a->drawn);
-    *a = (actor){0};
-}
-
-stf_result actor_energy(const actor *a, double *energy, double *relative_change)
-{
-    stf_energy parts;
-    const stf_result bad = stf_world_energy(a->world, &parts);
-
-    if (bad)
-        return bad;
-    *energy = parts.kinetic + parts.potential;
-    *relative_change = a->start_energy != 0 ? (*energy - a->start_energy) / fabs(a->start_energy) : (double)NAN;
-    return STF_OK;
-}
-
-static stf_result rebase(actor *a)
-{
-    stf_energy parts;
-    const stf_result bad = a->world ? stf_world_energy(a->world, &parts) : STF_OK;
-
-    if (!bad && a->world)
-        a->start_energy = parts.kinetic + parts.potential;
-    return bad;
-}
 
 static stf_result open_actor(actor *a, const settings *chosen, const stf_integrator *integrator)
 {
     const stf_world_def overrides = {
         .integrator = integrator, .step = chosen->step, .substeps = chosen->substeps, .keep_previous = true};
-    stf_result bad = scene_create(chosen->scene, &overrides, &a->world);
 
-    if (!bad) {
-        const double seconds = stf_world_count(a->world) > MANY_TRAILS ? TRAIL_SECONDS_OF_MANY : TRAIL_SECONDS;
-        bad = trail_open(&a->trail, a->world, seconds * chosen->scene->time_scale / stf_world_step_size(a->world));
-    }
-    if (!bad)
-        bad = rebase(a);
-    if (!bad) {
-        a->drawn = calloc(stf_world_count(a->world), STF_DIMENSIONS_MAX * sizeof *a->drawn);
-        bad = a->drawn ? STF_OK : STF_ERROR_MEMORY;
-    }
-    if (bad)
-        close_actor(a);
-    return bad;
+    return actor_open(a, chosen->scene, &overrides);
 }
 
 /* The clock's limit is in ticks, so another step or speed wants another clock. */
@@ -79,6 +36,16 @@ static stf_result make_clock(const session *s, double step, stf_clock *clock)
     return bad ? bad : s->paused ? stf_clock_set_time_scale(clock, 0) : STF_OK;
 }
 
+/* The drag scene's plots end: a world that ran on would leave them. */
+static uint64_t find_last_tick(const settings *chosen)
+{
+    const double ticks = floor(chosen->scene->duration / chosen->step + WHOLE_TICK);
+
+    if (chosen->scene != &scene_drag || ticks > TICKS_MOST)
+        return UINT64_MAX;
+    return ticks < 1 ? 1 : (uint64_t)ticks;
+}
+
 stf_result session_start(session *s, const settings *chosen)
 {
     session made = {.settings = *chosen, .display_period = s->display_period, .speed = s->speed > 0 ? s->speed : 1,
@@ -92,6 +59,7 @@ stf_result session_start(session *s, const settings *chosen)
     if (!bad) {
         made.settings.step = stf_world_step_size(made.main.world);
         made.settings.substeps = stf_world_substeps(made.main.world);
+        made.last_tick = find_last_tick(&made.settings);
         bad = make_clock(&made, made.settings.step, &made.clock);
     }
     if (bad) {
@@ -105,8 +73,8 @@ stf_result session_start(session *s, const settings *chosen)
 
 void session_close(session *s)
 {
-    close_actor(&s->main);
-    close_actor(&s->ghost);
+    actor_close(&s->main);
+    actor_close(&s->ghost);
 }
 
 /* What reading the performance counter twice takes by itself: as long as a step of one particle. */
@@ -121,21 +89,6 @@ static Uint64 counter_overhead(void)
     return least;
 }
 
-/* One tick; *counts grows by what the step took, in counts of the performance counter. */
-static stf_result tick(actor *a, Uint64 *counts)
-{
-    if (!a->world || a->lost)
-        return STF_OK;
-
-    const Uint64 start = SDL_GetPerformanceCounter();
-    const stf_result bad = stf_world_step(a->world, 1);
-    *counts += SDL_GetPerformanceCounter() - start;
-    if (bad)
-        return bad;
-    a->lost = stf_world_find_non_finite(a->world, &a->lost_particle);
-    return trail_record(&a->trail, a->world);
-}
-
 /* Notes what ticks of the main world took. */
 static void note_cost(session *s, double seconds, uint64_t ticks)
 {
@@ -145,22 +98,39 @@ static void note_cost(session *s, double seconds, uint64_t ticks)
         s->costs[s->cost_count++ % COST_SAMPLES] = seconds * NANOSECONDS / steps;
 }
 
-stf_result session_run(session *s, uint64_t ticks)
+static stf_result sample_energies(session *s)
+{
+    const stf_result bad = actor_sample_energy(&s->main);
+
+    return bad ? bad : actor_sample_energy(&s->ghost);
+}
+
+/* Runs ticks, and looks at the energies at every `sample_every`-th and the last. */
+static stf_result run(session *s, uint64_t ticks, uint64_t sample_every)
 {
     Uint64 counts = 0, ghost_counts = 0;
-    uint64_t run = 0;
+    uint64_t done = 0;
     stf_result bad = STF_OK;
 
-    for (; run < ticks && !s->main.lost && !bad; run++) {
-        bad = tick(&s->main, &counts);
+    for (; done < ticks && !s->main.lost && !bad; done++) {
+        bad = actor_tick(&s->main, &counts);
         if (!bad)
-            bad = tick(&s->ghost, &ghost_counts);
+            bad = actor_tick(&s->ghost, &ghost_counts);
+        if (!bad && stf_world_ticks(s->main.world) % sample_every == 0)
+            bad = sample_energies(s);
     }
-    if (run > 0) {
-        const double net = (double)counts - (double)run * (double)counter_overhead();
-        note_cost(s, fmax(net, 0) / (double)SDL_GetPerformanceFrequency(), run);
+    if (done > 0) {
+        const double net = (double)counts - (double)done * (double)counter_overhead();
+        note_cost(s, fmax(net, 0) / (double)SDL_GetPerformanceFrequency(), done);
     }
-    return bad;
+    return bad || done == 0 ? bad : sample_energies(s);
+}
+
+stf_result session_run(session *s, uint64_t ticks)
+{
+    const size_t count = stf_world_count(s->main.world);
+
+    return run(s, ticks, count > EVERY_TICK_MOST ? count / EVERY_TICK_MOST + 1 : 1);
 }
 
 stf_result session_place(session *s)
@@ -171,20 +141,24 @@ stf_result session_place(session *s)
     return bad || !s->ghost.world ? bad : stf_world_copy_positions(s->ghost.world, s->alpha, s->ghost.drawn, stride);
 }
 
+bool session_has_ended(const session *s) { return stf_world_ticks(s->main.world) >= s->last_tick; }
+
 stf_result session_advance(session *s, double frame_seconds)
 {
-    unsigned ticks;
+    unsigned due;
 
     s->ticks_this_frame = 0;
-    if (s->main.lost)
+    if (s->main.lost || session_has_ended(s))
         return STF_OK;
 
-    const stf_result bad = stf_clock_advance(&s->clock, frame_seconds, &ticks);
+    stf_result bad = stf_clock_advance(&s->clock, frame_seconds, &due);
     if (bad)
         return bad;
-    s->ticks_this_frame = ticks;
-    s->alpha = stf_clock_alpha(&s->clock);
-    return session_run(s, ticks);
+    const uint64_t left = s->last_tick - stf_world_ticks(s->main.world);
+    s->ticks_this_frame = due < left ? due : (unsigned)left;
+    bad = run(s, s->ticks_this_frame, UINT64_MAX);
+    s->alpha = session_has_ended(s) ? 1 : stf_clock_alpha(&s->clock);
+    return bad;
 }
 
 stf_result session_set_paused(session *s, bool paused)
@@ -213,13 +187,6 @@ stf_result session_set_speed(session *s, double speed)
     return STF_OK;
 }
 
-stf_result session_rebase_energy(session *s)
-{
-    const stf_result bad = rebase(&s->main);
-
-    return bad ? bad : rebase(&s->ghost);
-}
-
 double session_drawn_time(const session *s)
 {
     const double drawn = stf_world_time(s->main.world) - (1 - s->alpha) * s->settings.step;
@@ -245,20 +212,4 @@ double session_cost(const session *s)
         sorted[i] = s->costs[i];
     qsort(sorted, count, sizeof *sorted, compare);
     return count > 0 ? sorted[count / 2] : (double)NAN;
-}
-
-double session_ghost_distance(const session *s)
-{
-    const size_t count = stf_world_count(s->ghost.world);
-    double sum = 0;
-
-    for (size_t i = 0; i < count; i++) {
-        stf_particle a, b;
-        if (stf_world_get(s->main.world, i, &a) || stf_world_get(s->ghost.world, i, &b))
-            return (double)NAN;
-        const double dx = (double)a.position.x - (double)b.position.x, dy = (double)a.position.y - (double)b.position.y;
-        const double dz = (double)a.position.z - (double)b.position.z;
-        sum += dx * dx + dy * dy + dz * dz;
-    }
-    return count > 0 ? sqrt(sum / (double)count) : (double)NAN;
 }

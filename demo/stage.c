@@ -243,6 +243,19 @@ static double legend_entry(canvas *c, double right, double y, SDL_Color colour, 
     return right - font_width(&c->fonts[TEXT_SMALL], name) - 12 * (double)c->unit;
 }
 
+/* As the exact solution is drawn: in the drag scene's plots a dashed line, elsewhere a cross. */
+static void draw_exact_sample(canvas *c, const session *s, double x, double y)
+{
+    const double dash = 5 * (double)c->unit;
+
+    if (s->settings.scene != &scene_drag) {
+        draw_cross(c, x, y, 6 * c->unit, 1.25f * c->unit, COLOUR_EXACT);
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+        draw_line(c, x + (2 * i - 2) * dash, y, x + (2 * i - 1) * dash, y, 1.5f * c->unit, COLOUR_EXACT);
+}
+
 void stage_legend(canvas *c, const session *s, double right, double y)
 {
     const double unit = (double)c->unit, height = c->fonts[TEXT_SMALL].height, middle = y + height / 2, next = 26 * unit;
@@ -254,7 +267,7 @@ void stage_legend(canvas *c, const session *s, double right, double y)
 
     if (has_exact(s)) {
         right = legend_entry(c, right, y, COLOUR_EXACT, "exact");
-        draw_cross(c, right, middle, 6 * c->unit, 1.25f * c->unit, COLOUR_EXACT);
+        draw_exact_sample(c, s, right, middle);
         right -= next;
     }
     if (s->ghost.world) {

@@ -1,6 +1,7 @@
 #include "text.h"
 
 #include <SDL_ttf.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,9 +22,9 @@ static const char cell_characters[] = "?!\"#$%&'()*+,-./0123456789:;<=>@ABCDEFGH
 
 #define CELL_COLUMNS 16
 
-/* Numbers from least to below most are shown without an exponent; four digits of them. */
+/* Numbers from least to below most are shown without an exponent. */
 #define PLAIN_LEAST 1e-3
-#define PLAIN_MOST 9999.5
+#define PLAIN_MOST 999999.5
 
 /* The length in bytes of the UTF-8 character at `text`, which isn't its end. */
 static size_t character_length(const char *text)
@@ -135,7 +136,8 @@ void font_draw(const font *f, SDL_Renderer *renderer, int x, int y, SDL_Color co
     for (; *text; x += f->width) {
         const size_t length = character_length(text);
         if (*text != ' ') {
-            const int cell = find_cell(text, length);
+            const bool minus = text[0] == '-' && isdigit((unsigned char)text[1]); /* as wide as the digits */
+            const int cell = minus ? find_cell("−", strlen("−")) : find_cell(text, length);
             const SDL_Rect from = {cell % CELL_COLUMNS * f->width, cell / CELL_COLUMNS * f->height, f->width, f->height};
             const SDL_Rect to = {x, y, f->width, f->height};
             SDL_RenderCopy(renderer, f->cells, &from, &to);
@@ -144,32 +146,23 @@ void font_draw(const font *f, SDL_Renderer *renderer, int x, int y, SDL_Color co
     }
 }
 
-/* Appends a number in ASCII, with a minus sign as wide as the digits in place of the hyphen. */
-static void append_number(char *text, size_t size, const char *ascii)
-{
-    for (; *ascii; ascii++) {
-        const char plain[] = {*ascii, '\0'}, *out = *ascii == '-' ? "−" : plain;
-        if (strlen(text) + strlen(out) < size)
-            strcat(text, out);
-    }
-}
-
 void format_number(char *text, size_t size, double value)
 {
     const double magnitude = fabs(value);
-    char ascii[64];
+    char ascii[32];
 
-    text[0] = '\0';
     if (!isfinite(value)) {
         snprintf(text, size, "not finite");
     } else if (magnitude == 0 || (magnitude >= PLAIN_LEAST && magnitude < PLAIN_MOST)) {
-        snprintf(ascii, sizeof ascii, "%.4g", value);
-        append_number(text, size, ascii);
+        snprintf(text, size, magnitude < 1000 ? "%.4g" : "%.0f", value);
     } else {
-        snprintf(ascii, sizeof ascii, "%.2e", value);
+        snprintf(ascii, sizeof ascii, "%.3e", value);
         char *e = strchr(ascii, 'e');
         const long exponent = strtol(e + 1, NULL, 10); /* without its + and leading 0 */
-        snprintf(e + 1, sizeof ascii - (size_t)(e + 1 - ascii), "%ld", exponent);
-        append_number(text, size, ascii);
+        while (e[-1] == '0')
+            e--;
+        e -= e[-1] == '.';
+        *e = '\0';
+        snprintf(text, size, "%se%ld", ascii, exponent);
     }
 }

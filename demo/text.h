@@ -21,11 +21,11 @@ typedef struct font {
 bool font_open(font *f, SDL_Renderer *renderer, text_size size, float unit);
 void font_close(font *f);
 
-/* px. Text is UTF-8; what the font's cells lack shows as a question mark. */
+/* px. Text is UTF-8; what the font's cells lack shows as a question mark, a hyphen before a digit as a minus sign. */
 int font_width(const font *f, const char *text);
 void font_draw(const font *f, SDL_Renderer *renderer, int x, int y, SDL_Color colour, const char *text);
 
-/* "0.0123", "−1.23e−6", "not finite": for people; three or four significant digits. */
+/* "0.0123", "-1.234e-6", "not finite": for people; all digits before the point, or four that matter, without zeros at the end. */
 void format_number(char *text, size_t size, double value);
 
 #endif
