@@ -550,6 +550,12 @@ static void immovable_particles_have_no_gravitational_energy(void **state)
     add_force(world, &stf_force_attractor, &(stf_attractor){.position = {4, 0, 0}, .strength = 8});
     assert_ok(stf_world_energy(world, &energy));
     assert_true(energy.kinetic == 0 && energy.potential == -3 * 2 / 2.0 - 8 / 4.0 - 8 * 2 / 2.0);
+
+    /* Softened by 1.5 m, at 2 m the distance counts as 2.5 m; no particle pulls itself. */
+    const stf_all_pairs_gravity softened = {.gravitational_constant = 5, .softening = (stf_real)1.5};
+    assert_ok(stf_world_set_force(world, 1, &softened, 1));
+    assert_ok(stf_world_energy(world, &energy));
+    assert_close(energy.potential, -5 * 2 / 2.5 - 8 / 4.0 - 8 * 2 / 2.0, 1e-14);
     stf_world_destroy(world);
 }
 
@@ -640,6 +646,42 @@ static void changed_records_act_from_the_very_next_step(void **state)
         stf_world_destroy(changed);
         stf_world_destroy(fresh);
     }
+}
+
+/* Where there is no force the step after a teleport is exact: nothing of the old motion is left, and no other particle notices. */
+static void a_teleported_particle_moves_on_as_it_was_set(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        stf_world *world = make_world((stf_world_def){.integrator = stf_integrators[k], .step = 1.0 / 8});
+        const stf_particle set = {.position = {7, 8, 9}, .velocity = {-1, 2, 0}, .inverse_mass = 1};
+
+        for (int i = 0; i < 3; i++)
+            assert_ok(stf_world_add(world, &(stf_particle){.velocity = {4, 0, (stf_real)i}, .inverse_mass = 1}, NULL));
+        assert_ok(stf_world_step(world, 8));
+        assert_ok(stf_world_set(world, 1, &set));
+        assert_ok(stf_world_step(world, 8));
+        const stf_particle first = particle_of(world, 0), moved = particle_of(world, 1), last = particle_of(world, 2);
+        assert_true(moved.position.x == 6 && moved.position.y == 10 && moved.position.z == 9); /* eighths: exact */
+        assert_true(moved.velocity.x == -1 && moved.velocity.y == 2 && moved.velocity.z == 0);
+        assert_true(first.position.x == 8 && first.position.z == 0 && last.position.x == 8 && last.position.z == 4);
+        stf_world_destroy(world);
+    }
+}
+
+static void gravity_pulls_along_each_axis(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1, .gravity = {1, 2, 4}});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_ok(stf_world_step(world, 1));
+    assert_ok(stf_world_set_gravity(world, (stf_vector){8, 16, 32}));
+    assert_true(stf_world_gravity(world).x == 8 && stf_world_gravity(world).y == 16 && stf_world_gravity(world).z == 32);
+    assert_ok(stf_world_step(world, 1));
+    const stf_vector v = particle_of(world, 0).velocity;
+    assert_true(v.x == 9 && v.y == 18 && v.z == 36);
+    stf_world_destroy(world);
 }
 
 /* Methods of order 2 and more are exact under gravity, from the first step of each particle on. */
@@ -1054,6 +1096,8 @@ int main(void)
         cmocka_unit_test(the_first_non_finite_particle_is_found),
         cmocka_unit_test(changed_forces_act_from_the_very_next_step),
         cmocka_unit_test(changed_records_act_from_the_very_next_step),
+        cmocka_unit_test(a_teleported_particle_moves_on_as_it_was_set),
+        cmocka_unit_test(gravity_pulls_along_each_axis),
         cmocka_unit_test(particles_added_on_the_way_start_like_the_first),
         cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
