@@ -10,6 +10,7 @@ DESTDIR    =
 OPTIMISE   = -O3
 SAN        =# SAN=1: with the address and undefined-behaviour sanitizers
 WERROR     =# WERROR=1: a warning fails the build
+V          =# V=1: show the commands
 ALSO       =# deps: further groups to install, e.g. ALSO=clang
 
 # ---- what is built from what -----------------------------------------------------------------------------------------------
@@ -67,6 +68,9 @@ COMPILE = $(CC) -std=c99 -pedantic $(if $(SAN),-O1 -g,$(OPTIMISE)) $(WARNINGS) $
           -Iinclude -MMD -MP $(CPPFLAGS) $(CFLAGS)
 LINK    = $(CC) $(SANITIZE) $(LDFLAGS)
 
+# One short line a file, unless V=1 asks for the commands.
+say = $(if $(V),,@echo "  $@" && )
+
 # Asked when they are needed, not before: `make deps run` installs them on the way. Not ours to warn about: -isystem.
 package = $(shell pkg-config $(1) 2>/dev/null)
 CMOCKA_FLAGS = $(patsubst -I%,-isystem %,$(call package,--cflags cmocka))
@@ -93,28 +97,28 @@ help:
 	@echo "make test            all tests"
 	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
 	@echo "make clean           remove build/"
-	@echo "settings             CC=clang  SAN=1  WERROR=1  OPTIMISE=-O2  PREFIX=..."
+	@echo "settings             CC=clang  SAN=1  WERROR=1  V=1  OPTIMISE=-O2  PREFIX=..."
 
 library: $(STATIC) $(BUILD)/$(LINK_NAME)
 
 $(BUILD)/once/%.o: %.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
-	$(COMPILE) -c $< -o $@
+	$(say)$(COMPILE) -c $< -o $@
 
 $(BUILD)/f32/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
-	$(COMPILE) -c $< -o $@
+	$(say)$(COMPILE) -c $< -o $@
 
 $(BUILD)/f64/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
-	$(COMPILE) -DSTF_DOUBLE -c $< -o $@
+	$(say)$(COMPILE) -DSTF_DOUBLE -c $< -o $@
 
 $(STATIC): $(LIBRARY_OBJECTS)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(say)$(AR) rcs $@ $^
 
 $(SHARED): $(LIBRARY_OBJECTS)
-	$(LINK) $(SHARED_FLAGS) $^ -lm -o $@
+	$(say)$(LINK) $(SHARED_FLAGS) $^ -lm -o $@
 
 $(BUILD)/$(LINK_NAME): $(SHARED)
 	@ln -sf $(SHARED_NAME) $(BUILD)/$(SONAME)
@@ -139,18 +143,18 @@ need-sdl: | $(DEPS_FIRST)
 
 $(BUILD)/f32/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
-	$(COMPILE) -Idemo -c $< -o $@
+	$(say)$(COMPILE) -Idemo -c $< -o $@
 
 $(BUILD)/f64/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
-	$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
+	$(say)$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
 
 $(BUILD)/f32/demo/%.o: demo/%.c Makefile | need-sdl
 	@mkdir -p $(@D)
-	$(COMPILE) -Idemo -DSTF_DEMO_FONTS='"$(CURDIR)/demo/fonts"' $(SDL_FLAGS) -c $< -o $@
+	$(say)$(COMPILE) -Idemo -DSTF_DEMO_FONTS='"$(CURDIR)/demo/fonts"' $(SDL_FLAGS) -c $< -o $@
 
 $(DEMO): $(DEMO_OBJECTS) $(STATIC)
-	$(LINK) $^ $(SDL_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(SDL_LIBS) -lm -o $@
 
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
@@ -163,19 +167,19 @@ need-cmocka: | $(DEPS_FIRST)
 
 $(BUILD)/f32/tests/%.o: tests/%.c Makefile | need-cmocka
 	@mkdir -p $(@D)
-	$(COMPILE) -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
+	$(say)$(COMPILE) -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
 
 $(BUILD)/f64/tests/%.o: tests/%.c Makefile | need-cmocka
 	@mkdir -p $(@D)
-	$(COMPILE) -DSTF_DOUBLE -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
+	$(say)$(COMPILE) -DSTF_DOUBLE -Idemo -Itests $(CMOCKA_FLAGS) -c $< -o $@
 
 $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
 
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
 
 # ---- dependencies, installation -----------------------------------------------------------------------------------------------
 

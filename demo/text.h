@@ -25,7 +25,10 @@ void font_close(font *f);
 int font_width(const font *f, const char *text);
 void font_draw(const font *f, SDL_Renderer *renderer, int x, int y, SDL_Color colour, const char *text);
 
-/* "0.0123", "-1.234e-6", "not finite": for people; all digits before the point, or four that matter, without zeros at the end. */
+/*
+ * "0.0123", "-1.234e-6", "not finite": for people; all digits before the point, or four that matter, without zeros at the
+ * end.
+ */
 void format_number(char *text, size_t size, double value);
 
 #endif

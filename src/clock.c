@@ -12,7 +12,10 @@
  */
 #define WHOLE_STEP_SLACK 1e-9
 
-/* The quotient of a remainder and its step may round up to 1, and a step that was just made shorter may be below the remainder. */
+/*
+ * The quotient of a remainder and its step may round up to 1, and a step that was just made shorter may be below the
+ * remainder.
+ */
 #define LARGEST_BELOW_1 (1 - DBL_EPSILON / 2)
 
 static bool is_step(double step) { return isfinite(step) && step > 0; }
@@ -49,9 +52,9 @@ stf_result stf_clock_init(stf_clock *clock, const stf_clock_def *def)
 }
 
 /*
- * The frame time to reckon with: the multiple of the display's period that it is close to, so that the timer's jitter does not
- * make one frame run no tick and the next run two. The difference is set aside, and a frame that would take more than a step of it
- * is left as it is: a display whose period is not what it says can't pull simulated time away from real time.
+ * The frame time to reckon with: the multiple of the display's period that it is close to, so that the timer's jitter does
+ * not make one frame run no tick and the next run two. The difference is set aside, and a frame that would take more than a
+ * step of it is left as it is: a display whose period is not what it says can't pull simulated time away from real time.
  */
 static double snap(stf_clock *clock, double frame_seconds)
 {

@@ -132,7 +132,10 @@ static void many_ticks_in_one_call_equal_one_tick_in_many(void **state)
     }
 }
 
-/* The times that forces see are ticks x step too, so that replays do not depend on the frame rate: at a step that is not exact. */
+/*
+ * The times that forces see are ticks x step too, so that replays do not depend on the frame rate: at a step that is not
+ * exact.
+ */
 static void groups_of_ticks_change_no_bit(void **state)
 {
     (void)state;
@@ -260,7 +263,10 @@ static void count_particles(const void *records, size_t record_count, const stf_
         particles->force[stf_particles_offset(particles, i) + 2 * particles->stride] += (stf_real)(particles->first + i);
 }
 
-/* Every particle in turn, whole blocks but for the last, the whole world at once for a link; and the force reaches that particle. */
+/*
+ * Every particle in turn, whole blocks but for the last, the whole world at once for a link; and the force reaches that
+ * particle.
+ */
 static void forces_are_handed_every_particle_once(void **state)
 {
     (void)state;

@@ -55,7 +55,10 @@ static void copy_particles(const stf_world *world, stf_particle particles[COUNT]
         particles[i] = particle_of(world, i);
 }
 
-/* Steps the peeking world, and compares every particle's acceleration with force x inverse mass, within `roundings` of `scale`. */
+/*
+ * Steps the peeking world, and compares every particle's acceleration with force x inverse mass, within `roundings` of
+ * `scale`.
+ */
 static void check_forces(stf_world *world, const stf_particle *before, const vector *forces, double scale)
 {
     assert_ok(stf_world_step(world, 1));
@@ -298,7 +301,10 @@ static double potential_at(const example *e, size_t particle, int d, double shif
     return energy.potential;
 }
 
-/* Central differences err by h^2 and by round-off / h: both are eps^(2/3) at h = eps^(1/3). Third derivatives are up to some 100. */
+/*
+ * Central differences err by h^2 and by round-off / h: both are eps^(2/3) at h = eps^(1/3). Third derivatives are up to
+ * some 100.
+ */
 static void forces_at_rest_are_minus_the_gradient_of_the_potential(void **state)
 {
     (void)state;
@@ -326,7 +332,10 @@ static void forces_at_rest_are_minus_the_gradient_of_the_potential(void **state)
     }
 }
 
-/* Springs to the origin and to the first particle, from every block and its edges: k l^2 / 2 each, whatever block they are in. */
+/*
+ * Springs to the origin and to the first particle, from every block and its edges: k l^2 / 2 each, whatever block they are
+ * in.
+ */
 static void potentials_count_every_block_once(void **state)
 {
     (void)state;

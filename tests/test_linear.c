@@ -168,8 +168,8 @@ static stf_world *damped_world(const stf_integrator *integrator, double omega_dt
 }
 
 /*
- * A spring with drag, z = omega dt and q = k dt: the root that leaves the unit circle does so at -1. There x(n) = (-1)^n, so that
- * the Verlet methods want z^2 + 4 q <= 4 and semi-implicit Euler z^2 + 2 q <= 4; the README gives both.
+ * A spring with drag, z = omega dt and q = k dt: the root that leaves the unit circle does so at -1. There x(n) = (-1)^n,
+ * so that the Verlet methods want z^2 + 4 q <= 4 and semi-implicit Euler z^2 + 2 q <= 4; the README gives both.
  */
 static void spring_and_drag_together_lower_the_limit(void **state)
 {
@@ -231,7 +231,10 @@ static void set_equal_records(stf_world *world, unsigned tick)
     assert_ok(stf_world_set_force(world, 1, records, count));
 }
 
-/* A restart of position Verlet multiplies a spring's energy by some 1 + z^2 / 2; done at every tick, by e^5 in 1,000 at z = 0.1. */
+/*
+ * A restart of position Verlet multiplies a spring's energy by some 1 + z^2 / 2; done at every tick, by e^5 in 1,000 at z =
+ * 0.1.
+ */
 static void springs_stay_bounded_whatever_happens_around_them_at_every_tick(void **state)
 {
     (void)state;
@@ -297,8 +300,8 @@ static void runge_kutta_methods_gain_or_lose_the_energy_that_theory_says(void **
 }
 
 /*
- * Both symplectic methods keep an ellipse exactly: semi-implicit Euler x^2 + v^2/w^2 - (z) x v/w, velocity Verlet
- * (1 - z^2 / 4) x^2 + v^2 / w^2. Energy swings around it, by z / 2 and z^2 / 4, and never leaves. Source: Hairer, Lubich, Wanner
+ * Both symplectic methods keep an ellipse exactly: semi-implicit Euler x^2 + v^2/w^2 - (z) x v/w, velocity Verlet (1 - z^2
+ * / 4) x^2 + v^2 / w^2. Energy swings around it, by z / 2 and z^2 / 4, and never leaves. Source: Hairer, Lubich, Wanner
  * (2006), ex. I.1 and sec. I.5.
  */
 static void symplectic_methods_keep_their_own_invariant(void **state)

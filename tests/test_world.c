@@ -622,7 +622,10 @@ static void changed_forces_act_from_the_very_next_step(void **state)
     }
 }
 
-/* New records count from the next step on: as in a world that starts with them. Position Verlet counts them half a step before. */
+/*
+ * New records count from the next step on: as in a world that starts with them. Position Verlet counts them half a step
+ * before.
+ */
 static void changed_records_act_from_the_very_next_step(void **state)
 {
     (void)state;
@@ -648,7 +651,10 @@ static void changed_records_act_from_the_very_next_step(void **state)
     }
 }
 
-/* Where there is no force the step after a teleport is exact: nothing of the old motion is left, and no other particle notices. */
+/*
+ * Where there is no force the step after a teleport is exact: nothing of the old motion is left, and no other particle
+ * notices.
+ */
 static void a_teleported_particle_moves_on_as_it_was_set(void **state)
 {
     (void)state;
@@ -1048,7 +1054,10 @@ static void every_scene_is_made_and_stays_finite_with_its_own_integrator(void **
     assert_null(scene_find("nowhere"));
 }
 
-/* The exact solutions of the scenes are solutions: they start where the particles start, and their v is the slope of their x. */
+/*
+ * The exact solutions of the scenes are solutions: they start where the particles start, and their v is the slope of their
+ * x.
+ */
 static void exact_solutions_are_consistent(void **state)
 {
     (void)state;

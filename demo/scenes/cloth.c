@@ -1,4 +1,7 @@
-/* A square cloth, held at five points of one edge and let fall from the horizontal: springs along rows, columns and diagonals. */
+/*
+ * A square cloth, held at five points of one edge and let fall from the horizontal: springs along rows, columns and
+ * diagonals.
+ */
 #include "scene.h"
 
 #define SIDE 32        /* masses */

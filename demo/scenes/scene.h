@@ -1,6 +1,7 @@
 /*
- * The scenes: worlds with their forces, built by demo, tests and tools alike. No SDL in here, and only public headers of the
- * library. A scene is a const descriptor; its builder calls no libm function but sqrt, so that every machine builds the same bits.
+ * The scenes: worlds with their forces, built by demo, tests and tools alike. No SDL in here, and only public headers of
+ * the library. A scene is a const descriptor; its builder calls no libm function but sqrt, so that every machine builds the
+ * same bits.
  */
 #ifndef STEADFAST_DEMO_SCENE_H
 #define STEADFAST_DEMO_SCENE_H
@@ -57,7 +58,10 @@ const scene *scene_find(const char *name);
  */
 stf_result scene_create(const scene *s, const stf_world_def *overrides, stf_world **world);
 
-/* Root mean square, over the particles whose exact position is known, of the distance to it, in length units. NaN if none is. */
+/*
+ * Root mean square, over the particles whose exact position is known, of the distance to it, in length units. NaN if none
+ * is.
+ */
 double scene_error(const scene *s, const stf_world *world);
 
 #endif

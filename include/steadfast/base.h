@@ -49,7 +49,7 @@ typedef enum stf_result {
     STF_ERROR_RADIUS,     /* a radius that is negative, infinite or NaN, or not 0 in a world that does not keep radii */
     STF_ERROR_PARTICLE,   /* no particle has this index */
     STF_ERROR_FORCE,      /* no force has this id */
-    STF_ERROR_PARAMETERS, /* a force's parameters: a negative or non-finite coefficient, a spring from a particle to itself, records
+    STF_ERROR_PARAMETERS, /* a negative or non-finite coefficient, a spring from a particle to itself, records
                              for a force that has none */
     STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays */
     STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
@@ -67,8 +67,8 @@ STF_API const char *stf_version(void);
 
 /*
  * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
- * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from
- * create, destroy, reserve, and functions that add particles or add, set or remove a force or set an integrator: never in a step.
+ * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
+ * destroy, reserve, and functions that add particles or add, set or remove a force or set an integrator: never in a step.
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);

@@ -97,9 +97,9 @@ typedef struct stf_quadratic_drag {
 STF_API extern const stf_force stf_force_quadratic_drag;
 
 /*
- * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential
- * -m mu / sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the
- * force is 0. Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float, distances
+ * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential -m mu /
+ * sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the force is 0.
+ * Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float, distances
  * from 1e-18 to 1e18 m work, as long as the newtons are a float.
  */
 typedef struct stf_attractor {
@@ -125,11 +125,11 @@ typedef struct stf_anchored_spring {
 STF_API extern const stf_force stf_force_anchored_springs;
 
 /*
- * A damped spring between two particles: on a F = -(k (l - l0) + c ((v_a - v_b) . u)) u, d = x_a - x_b, l = |d|,
- * u = d / l, on b the opposite; potential k (l - l0)^2 / 2; sources as above. Where l = 0 the force is 0. A link force.
- * Removing a particle drops its springs. Springs that are not compressed swing no faster than omega = sqrt(2 K / m), K the sum of
- * the stiffnesses at a particle and m its mass, where that is largest (Gershgorin's bound; in a chain 2 sqrt(k / m)): omega dt has
- * to stay below the integrator's limit. Cost: a gather and a scatter of both ends a record.
+ * A damped spring between two particles: on a F = -(k (l - l0) + c ((v_a - v_b) . u)) u, d = x_a - x_b, l = |d|, u = d / l,
+ * on b the opposite; potential k (l - l0)^2 / 2; sources as above. Where l = 0 the force is 0. A link force. Removing a
+ * particle drops its springs. Springs that are not compressed swing no faster than omega = sqrt(2 K / m), K the sum of the
+ * stiffnesses at a particle and m its mass, where that is largest (Gershgorin's bound; in a chain 2 sqrt(k / m)): omega dt
+ * has to stay below the integrator's limit. Cost: a gather and a scatter of both ends a record.
  */
 typedef struct stf_spring {
     uint32_t a, b;        /* indices; not the same */

@@ -49,9 +49,9 @@ struct stf_system {
                            substeps changed. Else only records, gravity or other particles did: kept accelerations are old */
 
     /*
-     * acceleration[i] = a(time, position, velocity)[i] in m/s^2, for all `length` elements. `system` is the one that the step was
-     * given, never a copy. position and velocity may be its own or work arrays; acceleration is another array. Costs one call
-     * of every force.
+     * acceleration[i] = a(time, position, velocity)[i] in m/s^2, for all `length` elements. `system` is the one that the
+     * step was given, never a copy. position and velocity may be its own or work arrays; acceleration is another array.
+     * Costs one call of every force.
      */
     void (*accelerate)(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
                        stf_real *acceleration);

@@ -7,8 +7,8 @@
  *     velocities  | the same
  *     inverse masses, radii | [stride] | [stride] | ...
  *
- * where stride is a power of two: 256 floats or 128 doubles, fewer in a world that never had room for as many particles. A world
- * of two dimensions has no z. Forces see these arrays as an stf_particles.
+ * where stride is a power of two: 256 floats or 128 doubles, fewer in a world that never had room for as many particles. A
+ * world of two dimensions has no z. Forces see these arrays as an stf_particles.
  */
 #ifndef STEADFAST_PARTICLE_H
 #define STEADFAST_PARTICLE_H

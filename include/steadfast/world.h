@@ -1,9 +1,9 @@
 /*
  * world: owns the particles, joins forces and integrator, runs steps.
  *
- * Every function that takes a world refuses NULL with STF_ERROR_NULL (getters of a plain value return 0 or NULL). A
- * world is changed by one thread at a time, and read (functions that take it const) by any number; two worlds share nothing. Calling these functions from inside a force or an
- * integrator is not allowed.
+ * Every function that takes a world refuses NULL with STF_ERROR_NULL (getters of a plain value return 0 or NULL). A world
+ * is changed by one thread at a time, and read (functions that take it const) by any number; two worlds share nothing.
+ * Calling these functions from inside a force or an integrator is not allowed.
  */
 #ifndef STEADFAST_WORLD_H
 #define STEADFAST_WORLD_H
@@ -58,17 +58,18 @@ STF_API stf_result stf_world_add_many(stf_world *world, const stf_particle *part
 STF_API stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *particle);
 
 /*
- * Replaces a particle. A new position is a teleport: the previous one is set as well, and nothing is blended. The integrator
- * starts afresh from this state; for position Verlet that is a step of first order, and a particle on a spring that is set at
- * every tick gains energy. To drive a particle, make it immovable (inverse mass 0) and set its velocity: it is blended, and moves
- * by velocity x step a tick. Errors: PARTICLE, and as stf_world_add.
+ * Replaces a particle. A new position is a teleport: the previous one is set as well, and nothing is blended. The
+ * integrator starts afresh from this state; for position Verlet that is a step of first order, and a particle on a spring
+ * that is set at every tick gains energy. To drive a particle, make it immovable (inverse mass 0) and set its velocity: it
+ * is blended, and moves by velocity x step a tick. Errors: PARTICLE, and as stf_world_add.
  */
 STF_API stf_result stf_world_set(stf_world *world, size_t index, const stf_particle *particle);
 
 /*
  * Removes a particle: the last one takes its index. *moved (unless NULL) gets the index that the moved particle had, which
  * is `index` itself where the removed one was the last. Records of forces are renumbered, those that name the removed
- * particle dropped. Errors: PARTICLE. Cost: one look at each record that names particles, and a move of those behind a dropped one.
+ * particle dropped. Errors: PARTICLE. Cost: one look at each record that names particles, and a move of those behind a
+ * dropped one.
  */
 STF_API stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved);
 
@@ -97,9 +98,10 @@ STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force,
                                        size_t record_count, stf_force_id *id);
 
 /*
- * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where their number
- * changes, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so that records may
- * change at every tick. A force that is known beforehand had better compute its change from `time` in apply.
+ * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where their
+ * number changes, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
+ * that records may change at every tick. A force that is known beforehand had better compute its change from `time` in
+ * apply.
  */
 STF_API stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *records, size_t record_count);
 
@@ -156,20 +158,25 @@ typedef struct stf_energy {
     double potential; /* J: uniform gravity (-m g . x) and every force that has a potential */
 } stf_energy;
 
-/* Immovable particles have no finite mass and are left out. Summed in double, in the order of indices. Cost: one pass, and one a
-   potential; all-pairs gravity's takes n (n - 1) / 2 pairs. */
+/*
+ * Immovable particles have no finite mass and are left out. Summed in double, in the order of indices. Cost: one pass, and
+ * one a potential; all-pairs gravity's takes n (n - 1) / 2 pairs.
+ */
 STF_API stf_result stf_world_energy(const stf_world *world, stf_energy *energy);
 
 /* momentum[3] in kg m/s, summed as above. */
 STF_API stf_result stf_world_momentum(const stf_world *world, double momentum[STF_DIMENSIONS_MAX]);
 
-/* Whether any position or velocity is a NaN or an infinity; if so the lowest such particle goes to *index unless that is NULL. */
+/*
+ * Whether any position or velocity is a NaN or an infinity; if so the lowest such particle goes to *index unless that is
+ * NULL.
+ */
 STF_API bool stf_world_find_non_finite(const stf_world *world, size_t *index);
 
 /*
- * Writes what the world models and what each of it costs (passes a step of the integrator, bytes a particle) into text[size] as lines of
- * aligned plain text, cut off if it is too long, always terminated. Returns the length of the whole text, as snprintf does;
- * text may be NULL if size is 0. 4,096 bytes hold some twenty forces.
+ * Writes what the world models and what each of it costs (passes a step of the integrator, bytes a particle) into
+ * text[size] as lines of aligned plain text, cut off if it is too long, always terminated. Returns the length of the whole
+ * text, as snprintf does; text may be NULL if size is 0. 4,096 bytes hold some twenty forces.
  */
 STF_API size_t stf_world_describe(const stf_world *world, char *text, size_t size);
 

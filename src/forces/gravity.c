@@ -107,9 +107,9 @@ typedef struct source {
 } source;
 
 /*
- * What one source does to the particles of one block: a -= G m d / (|d|^2 + e^2)^(3/2). The sum over sources runs in the order of
- * their indices and the loop over the particles that they pull, so that no sum is ever split among lanes of a vector.
- * `dimensions` is a constant at each call, so the compiler makes a loop for each.
+ * What one source does to the particles of one block: a -= G m d / (|d|^2 + e^2)^(3/2). The sum over sources runs in the
+ * order of their indices and the loop over the particles that they pull, so that no sum is ever split among lanes of a
+ * vector. `dimensions` is a constant at each call, so the compiler makes a loop for each.
  */
 static inline void pull_block(unsigned dimensions, size_t n, size_t stride, stf_real *restrict a,
                               const stf_real *restrict x, const source *restrict from)

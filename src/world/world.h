@@ -60,8 +60,10 @@ struct stf_world {
     stf_force_id last_force_id;
 };
 
-/* Has storage with at least this room, for this integrator's arrays, and with `whole` work arrays if that is asked or was before;
-   moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was. */
+/*
+ * Has storage with at least this room, for this integrator's arrays, and with `whole` work arrays if that is asked or was
+ * before; moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was.
+ */
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole);
 void stf_storage_release(stf_world *world);
 

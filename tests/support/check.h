@@ -47,7 +47,10 @@ void check_close(double actual, double expected, double tolerance, const char *w
 void check_below(double actual, double bound, const char *what, const char *file, int line);
 void check_result(stf_result result, stf_result expected, const char *what, const char *file, int line);
 
-/* The world's particles in full (every bit), its count, ticks, time, step, substeps, gravity, integrator, forces and records. */
+/*
+ * The world's particles in full (every bit), its count, ticks, time, step, substeps, gravity, integrator, forces and
+ * records.
+ */
 uint64_t hash_of(const stf_world *world);
 
 /* The next of a sequence of pseudorandom numbers in [0, 1) with 24 bits (splitmix64); *state starts as any seed. */
