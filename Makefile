@@ -68,8 +68,9 @@ COMPILE = $(CC) -std=c99 -pedantic $(if $(SAN),-O1 -g,$(OPTIMISE)) $(WARNINGS) $
           -Iinclude -MMD -MP $(CPPFLAGS) $(CFLAGS)
 LINK    = $(CC) $(SANITIZE) $(LDFLAGS)
 
-# One short line a file, unless V=1 asks for the commands.
-say = $(if $(V),,@echo "  $@" && )
+# One short line a file, unless V=1 asks for the commands or make -s for nothing.
+quiet := $(findstring s,$(firstword -$(filter-out --%,$(MAKEFLAGS))))
+say    = $(if $(V),,@$(if $(quiet),,echo "  $@" && ))
 
 # Asked when they are needed, not before: `make deps run` installs them on the way. Not ours to warn about: -isystem.
 package = $(shell pkg-config $(1) 2>/dev/null)
