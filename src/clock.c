@@ -83,8 +83,7 @@ stf_result stf_clock_advance(stf_clock *clock, double frame_seconds, unsigned *t
         return STF_ERROR_NULL;
     if (!is_duration(frame_seconds))
         return STF_ERROR_FRAME_TIME;
-
-    if (!isfinite(frame_seconds * clock->time_scale / clock->step))
+    if (!isfinite((fabs(clock->remainder) + frame_seconds * clock->time_scale) / clock->step))
         return STF_ERROR_FRAME_TIME;
 
     const double simulated = clock->remainder + snap(clock, frame_seconds) * clock->time_scale;

@@ -349,6 +349,30 @@ static void elements_of_no_particle_are_zero(void **state)
     stf_world_destroy(world);
 }
 
+/* Keeps dt in its history, for all elements alike, and as any step may leaves the rest alone. */
+static void leave_something(stf_system *system, stf_real dt)
+{
+    for (size_t i = 0; i < system->length; i++)
+        system->history[0][i] = dt;
+}
+
+static void an_integrator_finds_nothing_of_the_one_before(void **state)
+{
+    (void)state;
+    const stf_integrator litterer = {.name = "litterer", .step = leave_something, .history_arrays = 1};
+    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = sum_spare_lanes};
+    stf_real left_over = 1, *at = &left_over;
+    stf_world *world = make_world((stf_world_def){.integrator = &litterer, .step = 1});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_ok(stf_world_step(world, 1));
+    add_force(world, &spy, &at);
+    assert_ok(stf_world_set_integrator(world, &stf_position_verlet));
+    assert_ok(stf_world_step(world, 5));
+    assert_true(left_over == 0);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -361,6 +385,7 @@ int main(void)
         cmocka_unit_test(ways_of_filling_a_world_are_equal),
         cmocka_unit_test(forces_are_handed_every_particle_once),
         cmocka_unit_test(elements_of_no_particle_are_zero),
+        cmocka_unit_test(an_integrator_finds_nothing_of_the_one_before),
     };
 
     return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);

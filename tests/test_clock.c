@@ -727,6 +727,21 @@ static void display_period_can_change_and_refuses_what_the_def_does(void **state
     assert_true(clock.set_aside == before.set_aside);
 }
 
+/* What is left of a frame may be more steps than a double holds, once the steps are short enough. */
+static void a_remainder_of_too_many_steps_is_refused(void **state)
+{
+    (void)state;
+    stf_clock clock = make_clock((stf_clock_def){.step = 1});
+    unsigned ticks = 7;
+
+    assert_int_equal(advance(&clock, 0.5), 0);
+    assert_ok(stf_clock_set_step(&clock, 1e-310));
+    const stf_clock before = clock;
+    assert_refused(stf_clock_advance(&clock, 0, &ticks), STF_ERROR_FRAME_TIME);
+    assert_int_equal(ticks, 0);
+    assert_memory_equal(&clock, &before, sizeof clock);
+}
+
 static void single_steps_run_one_a_frame_while_paused(void **state)
 {
     (void)state;
@@ -877,6 +892,7 @@ int main(void)
         cmocka_unit_test(a_paused_clock_does_not_tick_when_its_step_gets_shorter),
         cmocka_unit_test(default_cap_follows_the_step),
         cmocka_unit_test(display_period_can_change_and_refuses_what_the_def_does),
+        cmocka_unit_test(a_remainder_of_too_many_steps_is_refused),
         cmocka_unit_test(single_steps_run_one_a_frame_while_paused),
         cmocka_unit_test(single_steps_come_on_top_of_a_running_clock),
         cmocka_unit_test(a_single_step_waits_for_a_frame_that_has_room),

@@ -12,10 +12,10 @@
 #define TICKS 300
 
 #ifdef STF_DOUBLE
-#define GOLDEN UINT64_C(0xb65030e5a98171a3)
+#define GOLDEN UINT64_C(0xceb893181c4373a0)
 typedef uint64_t real_bits;
 #else
-#define GOLDEN UINT64_C(0xce393e5695822f5c)
+#define GOLDEN UINT64_C(0xc77b6ce82252ebbb)
 typedef uint32_t real_bits;
 #endif
 

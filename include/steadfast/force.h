@@ -39,8 +39,8 @@
  *     const stf_force tether_force = {.name = "tether", .kind = STF_LINK, .record_size = sizeof(tether), .apply = haul,
  *                                     .potential = hauled, .depends_on = STF_ON_POSITION};
  *
- * A world with no link force steps block by block, all stages of a block in cache; one link force makes it pass over all
- * particles for each stage.
+ * A world with no link force, or none that has records, steps block by block, all stages of a block in cache; one link force
+ * makes it pass over all particles for each stage.
  *
  * Uniform gravity is no force but a part of the world (stf_world_def.gravity): it costs no loop.
  */
@@ -99,8 +99,8 @@ STF_API extern const stf_force stf_force_quadratic_drag;
 /*
  * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential -m mu /
  * sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the force is 0.
- * Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float, distances
- * from 1e-18 to 1e18 m work, as long as the newtons are a float.
+ * Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float,
+ * distances r from 1e-18 to 1e18 m work, as long as mu / r, mu / r^2 and the newtons are floats.
  */
 typedef struct stf_attractor {
     stf_vector position; /* m */

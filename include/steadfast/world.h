@@ -98,8 +98,8 @@ STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force,
                                        size_t record_count, stf_force_id *id);
 
 /*
- * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where their
- * number changes, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
+ * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where there
+ * are more than ever before or none, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
  * that records may change at every tick. A force that is known beforehand had better compute its change from `time` in
  * apply.
  */

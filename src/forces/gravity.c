@@ -40,24 +40,26 @@ static void softened_squares(const stf_particles *particles, const stf_real cent
 }
 
 /*
- * factor = strength m / square^(3/2), from square; 0 at the very centre and for the immovable. Divided step by step: a cube
- * of distances leaves the floats long before the force does.
+ * In place of squares 1 / distance, and strength m / square; 0 at the very centre and for the immovable. Two factors, as the
+ * cube of a distance leaves the floats long before the force does.
  */
-static void attraction(size_t n, stf_real *restrict squares, const stf_real *restrict inverse_mass, stf_real strength)
+static void attraction(size_t n, stf_real *restrict squares, stf_real *restrict pulls,
+                       const stf_real *restrict inverse_mass, stf_real strength)
 {
     for (size_t i = 0; i < n; i++) {
         const stf_real inverse = 1 / stf_sqrt(squares[i]);
-        const stf_real factor = strength * inverse * inverse * inverse / inverse_mass[i];
-        squares[i] = squares[i] > 0 && inverse_mass[i] > 0 ? factor : 0;
+        const stf_real pull = strength * inverse * inverse / inverse_mass[i];
+        pulls[i] = squares[i] > 0 && inverse_mass[i] > 0 ? pull : 0;
+        squares[i] = squares[i] > 0 ? inverse : 0;
     }
 }
 
-/* F = -factor d */
-static void pull(size_t n, stf_real *restrict force, const stf_real *restrict x, const stf_real *restrict factor,
-                 stf_real centre)
+/* F = -pull d / |d| */
+static void pull(size_t n, stf_real *restrict force, const stf_real *restrict x, const stf_real *restrict pulls,
+                 const stf_real *restrict inverse, stf_real centre)
 {
     for (size_t i = 0; i < n; i++)
-        force[i] -= factor[i] * (x[i] - centre);
+        force[i] -= pulls[i] * ((x[i] - centre) * inverse[i]);
 }
 
 static void attractor_apply(const void *records, size_t record_count, const stf_particles *particles, double time)
@@ -68,13 +70,13 @@ static void attractor_apply(const void *records, size_t record_count, const stf_
     for (size_t r = 0; r < record_count; r++) {
         const stf_vector p = attractors[r].position;
         const stf_real centre[STF_DIMENSIONS_MAX] = {p.x, p.y, p.z};
-        stf_real factor[STF_BLOCK_MAX];
+        stf_real inverse[STF_BLOCK_MAX], pulls[STF_BLOCK_MAX];
 
-        softened_squares(particles, centre, attractors[r].softening, factor);
-        attraction(particles->count, factor, particles->inverse_mass, attractors[r].strength);
+        softened_squares(particles, centre, attractors[r].softening, inverse);
+        attraction(particles->count, inverse, pulls, particles->inverse_mass, attractors[r].strength);
         for (unsigned d = 0; d < particles->dimensions; d++)
             pull(particles->count, particles->force + d * particles->stride,
-                 particles->position + d * particles->stride, factor, centre[d]);
+                 particles->position + d * particles->stride, pulls, inverse, centre[d]);
     }
 }
 
@@ -122,15 +124,14 @@ static inline void pull_block(unsigned dimensions, size_t n, size_t stride, stf_
         const stf_real dy = dimensions > 1 ? x[stride + i] - sy : 0;
         const stf_real dz = dimensions > 2 ? x[2 * stride + i] - sz : 0;
         const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
-        const stf_real inverse = 1 / stf_sqrt(square);
-        const stf_real pull = strength * inverse * inverse * inverse;
-        const stf_real factor = square > 0 ? pull : 0;
+        const stf_real reciprocal = 1 / stf_sqrt(square), inverse = square > 0 ? reciprocal : 0;
+        const stf_real pull = strength * inverse * inverse;
 
-        a[i] -= factor * dx;
+        a[i] -= pull * (dx * inverse);
         if (dimensions > 1)
-            a[stride + i] -= factor * dy;
+            a[stride + i] -= pull * (dy * inverse);
         if (dimensions > 2)
-            a[2 * stride + i] -= factor * dz;
+            a[2 * stride + i] -= pull * (dz * inverse);
     }
 }
 

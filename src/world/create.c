@@ -117,8 +117,10 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
     if (no_room)
         return no_room;
 
-    if (integrator != world->integrator)
+    if (integrator != world->integrator) {
+        stf_world_clear_history(world);
         stf_world_forget_history(world, 0, world->count);
+    }
     world->integrator = integrator;
     return STF_OK;
 }

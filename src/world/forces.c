@@ -130,8 +130,8 @@ stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *re
     stf_result bad = check_records(world, added->force, records, record_count);
     if (bad)
         return bad;
-    if (added->bytes > 0 && record_count == added->bytes / added->force->record_size) {
-        memmove(added->records, records, added->bytes); /* they may be the world's own */
+    if (record_count > 0 && record_count <= added->bytes / added->force->record_size) {
+        memmove(added->records, records, record_count * added->force->record_size); /* they may be the world's own */
         arrange_records(added, record_count);
     } else {
         bad = copy_records(world, &changed, records, record_count);

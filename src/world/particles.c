@@ -185,8 +185,7 @@ stf_result stf_world_clear(stf_world *world)
     memset(storage->position, 0, lanes * world->dimensions * sizeof(stf_real));
     memset(storage->velocity, 0, lanes * world->dimensions * sizeof(stf_real));
     memset(storage->inverse_mass, 0, lanes * sizeof(stf_real));
-    for (int k = 0; k < storage->history_arrays; k++)
-        memset(storage->history[k], 0, lanes * world->dimensions * sizeof(stf_real));
+    stf_world_clear_history(world);
     stf_world_drop_particle_records(world);
     world->count = 0;
     return STF_OK;
@@ -214,7 +213,8 @@ stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *
 
     const size_t bytes = stride_bytes ? stride_bytes : world->dimensions * sizeof(float);
     const size_t stride = world->storage.stride;
-    const stf_real *now = world->storage.position, *before = alpha < 1 ? world->storage.previous : now;
+    const stf_real *before = alpha < 1 ? world->storage.previous : world->storage.position;
+    const stf_real *now = alpha > 0 ? world->storage.position : before; /* 0 x infinity is none of a finite past */
 
     for (size_t first = 0; first < world->count; first += stride) {
         const size_t n = world->count - first < stride ? world->count - first : stride;

@@ -74,6 +74,8 @@ static void choose_blocks(stf_storage *storage, size_t capacity)
         storage->capacity = storage->stride;
 }
 
+static int larger(int a, int b) { return a > b ? a : b; }
+
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole)
 {
     const stf_storage *old = &world->storage;
@@ -85,8 +87,8 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
         return STF_ERROR_MEMORY;
 
     stf_storage new = {.whole = whole || old->whole,
-                       .history_arrays = integrator->history_arrays,
-                       .work_arrays = integrator->work_arrays};
+                       .history_arrays = larger(integrator->history_arrays, old->history_arrays),
+                       .work_arrays = larger(integrator->work_arrays, old->work_arrays)};
     choose_blocks(&new, capacity > old->capacity ? capacity : old->capacity);
     lay_out(&new, world);
     new.memory = stf_allocator_allocate(&world->allocator, new.bytes);
@@ -105,6 +107,14 @@ void stf_storage_release(stf_world *world)
 {
     stf_allocator_release(&world->allocator, world->storage.memory, world->storage.bytes);
     world->storage = (stf_storage){0};
+}
+
+void stf_world_clear_history(stf_world *world)
+{
+    const stf_storage *storage = &world->storage;
+
+    for (int k = 0; k < storage->history_arrays; k++)
+        memset(storage->history[k], 0, storage->capacity * world->dimensions * sizeof(stf_real));
 }
 
 void stf_world_forget_history(stf_world *world, size_t first, size_t count)

@@ -9,6 +9,7 @@
 /* Names of these functions for the second precision; the public ones are in precision.h. */
 #ifdef STF_DOUBLE
 #define stf_storage_require stf_storage_require_f64
+#define stf_world_clear_history stf_world_clear_history_f64
 #define stf_world_forget_history stf_world_forget_history_f64
 #define stf_storage_release stf_storage_release_f64
 #define stf_world_particles stf_world_particles_f64
@@ -61,8 +62,8 @@ struct stf_world {
 };
 
 /*
- * Has storage with at least this room, for this integrator's arrays, and with `whole` work arrays if that is asked or was
- * before; moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was.
+ * Has storage with at least this room, for this integrator's arrays, and with `whole` work arrays, or as much of each as there
+ * was before; moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was.
  */
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole);
 void stf_storage_release(stf_world *world);
@@ -74,6 +75,9 @@ static inline size_t stf_world_blocks(const stf_world *world)
 
 /* Reals of a block in an array of vectors. */
 static inline size_t stf_world_block_length(const stf_world *world) { return world->storage.stride * world->dimensions; }
+
+/* Sets all history to 0, that of no particle too: another integrator may have left there what it liked. */
+void stf_world_clear_history(stf_world *world);
 
 /* Marks the history of `count` particles from `first` as none: NaN in every component. */
 void stf_world_forget_history(stf_world *world, size_t first, size_t count);
