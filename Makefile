@@ -15,8 +15,8 @@ ALSO       =# deps: further groups to install, e.g. ALSO=clang
 
 # ---- what is built from what -----------------------------------------------------------------------------------------------
 
-MAJOR := 0
-VERSION := 0.1.0
+VERSION := $(shell sed -n 's/^.define STF_VERSION_[A-Z]* *//p' include/steadfast/base.h | paste -s -d . -)
+MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
 MODE  := $(if $(SAN),sanitize,release)
 BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
@@ -69,7 +69,7 @@ COMPILE = $(CC) -std=c99 -pedantic $(if $(SAN),-O1 -g,$(OPTIMISE)) $(WARNINGS) $
 LINK    = $(CC) $(SANITIZE) $(LDFLAGS)
 
 # One short line a file, unless V=1 asks for the commands or make -s for nothing.
-quiet := $(findstring s,$(firstword -$(filter-out --%,$(MAKEFLAGS))))
+quiet := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say    = $(if $(V),,@$(if $(quiet),,echo "  $@" && ))
 
 # Asked when they are needed, not before: `make deps run` installs them on the way. Not ours to warn about: -isystem.

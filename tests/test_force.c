@@ -56,8 +56,8 @@ static void copy_particles(const stf_world *world, stf_particle particles[COUNT]
 }
 
 /*
- * Steps the peeking world, and compares every particle's acceleration with force x inverse mass, within `roundings` of
- * `scale`.
+ * Steps the peeking world, and compares every particle's acceleration with force x inverse mass, within `scale` roundings
+ * of a number near 1.
  */
 static void check_forces(stf_world *world, const stf_particle *before, const vector *forces, double scale)
 {

@@ -64,6 +64,28 @@ static void substeps_are_steps(void **state)
         }
 }
 
+/*
+ * The README's floor: from steps of 4 / 2048 (order 2) and 4 / 128 (RK4) on, steps 16 times as small have an error that the order
+ * would make 256 or 65,536 times as small. In double it does, to a factor of 2; in float round-off leaves it within a factor of 4.
+ */
+static void only_double_gains_from_steps_below_the_floor_of_float(void **state)
+{
+    (void)state;
+    for (int i = 0; stf_integrators[i]; i++) {
+        const int order = stf_integrators[i]->order;
+        const unsigned steps = order == 4 ? 128 : 2048;
+
+        if (order < 2)
+            continue;
+        const double gain = problem_error_after(&problem_oscillator, stf_integrators[i], steps) /
+                            problem_error_after(&problem_oscillator, stf_integrators[i], 16 * steps);
+        if (REAL_EPSILON < 1e-10)
+            assert_above(gain, pow(16, order) / 2);
+        else
+            assert_below(gain, 4);
+    }
+}
+
 /* Things that happen half way through a run. Each leaves the exact solution of particle 0 what it was. */
 typedef void event(stf_world *world);
 
@@ -162,6 +184,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_is_the_descriptors_on_every_problem),
         cmocka_unit_test(substeps_are_steps),
+        cmocka_unit_test(only_double_gains_from_steps_below_the_floor_of_float),
         cmocka_unit_test(order_survives_what_makes_history_stale),
     };
 

@@ -41,10 +41,9 @@ static void accelerate(stf_system *system, double time, const stf_real *position
             stf_world_particles(world, r->first_block + b, 1, position + at, velocity + at, acceleration + at);
         apply_forces(world, STF_FIELD, &block, time);
     }
-    if (stf_world_is_tied(world)) {
-        const stf_particles all = stf_world_particles(world, 0, r->blocks, position, velocity, acceleration);
-        apply_forces(world, STF_LINK, &all, time);
-    }
+    /* Where a link acts the range is all of the world; where none does this calls nothing. */
+    const stf_particles all = stf_world_particles(world, r->first_block, r->blocks, position, velocity, acceleration);
+    apply_forces(world, STF_LINK, &all, time);
     for (size_t b = 0; b < r->blocks; b++) {
         const stf_real *inverse_mass = world->storage.inverse_mass + (r->first_block + b) * stride;
         for (unsigned d = 0; d < world->dimensions; d++)
