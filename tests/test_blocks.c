@@ -1,4 +1,5 @@
 /* Blocks change no bit: every count, in a block or out of it, alone or together, in one call or in many. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/check.h"
@@ -373,6 +374,57 @@ static void an_integrator_finds_nothing_of_the_one_before(void **state)
     stf_world_destroy(world);
 }
 
+/* With semi-implicit Euler and a step of 1 s the velocity gains just the acceleration. */
+static void assert_acceleration_is_what_a_step_adds(size_t count, bool tied)
+{
+    const stf_real wave = (stf_real)0.37;
+    stf_world *world = make_world((stf_world_def){.dimensions = 3, .step = 1, .gravity = {0, -8, 1}});
+
+    for (size_t i = 0; i < count; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {wave * (stf_real)i, 1, 0},
+                                                       .velocity = {1, (stf_real)i, wave},
+                                                       .inverse_mass = (stf_real)(i % 3)}, NULL));
+    add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
+    if (tied)
+        add_force(world, &stf_force_springs, &(stf_spring){.a = 0, .b = (uint32_t)count - 1, .stiffness = 1});
+
+    const stf_particles view = stf_world_view(world);
+    const size_t blocks = (count + view.stride - 1) / view.stride, length = blocks * view.stride * view.dimensions;
+    stf_real *before = calloc(length, sizeof *before), *acceleration = calloc(length, sizeof *acceleration);
+    const uint64_t hash = hash_of(world);
+
+    assert_non_null(before);
+    assert_non_null(acceleration);
+    assert_int_equal(view.count, count);
+    assert_null(view.force);
+    memcpy(before, view.velocity, length * sizeof *before);
+    assert_ok(stf_world_accelerations(world, 0, view.position, view.velocity, acceleration));
+    assert_true(hash_of(world) == hash);
+    assert_ok(stf_world_step(world, 1));
+    for (size_t i = 0; i < length; i++)
+        assert_true(view.velocity[i] == before[i] + acceleration[i]);
+    for (size_t i = 0; i < count; i++) {
+        const stf_real *x = view.position + stf_particles_offset(&view, i);
+        const stf_vector expected = particle_of(world, i).position;
+        assert_true(x[0] == expected.x && x[view.stride] == expected.y && x[2 * view.stride] == expected.z);
+        assert_true(view.inverse_mass[i] == particle_of(world, i).inverse_mass);
+    }
+    free(before);
+    free(acceleration);
+    stf_world_destroy(world);
+}
+
+static void accelerations_are_those_of_a_step_and_change_nothing(void **state)
+{
+    (void)state;
+    for (int tied = 0; tied < 2; tied++) {
+        assert_acceleration_is_what_a_step_adds(2, tied);
+        assert_acceleration_is_what_a_step_adds(2 * STF_BLOCK_MAX + 5, tied);
+    }
+    assert_int_equal(stf_world_view(NULL).count, 0);
+    assert_refused(stf_world_accelerations(NULL, 0, NULL, NULL, NULL), STF_ERROR_NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +438,7 @@ int main(void)
         cmocka_unit_test(forces_are_handed_every_particle_once),
         cmocka_unit_test(elements_of_no_particle_are_zero),
         cmocka_unit_test(an_integrator_finds_nothing_of_the_one_before),
+        cmocka_unit_test(accelerations_are_those_of_a_step_and_change_nothing),
     };
 
     return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);

@@ -84,6 +84,8 @@ typedef double stf_real;
 #define stf_world_dimensions        stf_world_dimensions_f64
 #define stf_world_energy            stf_world_energy_f64
 #define stf_world_momentum          stf_world_momentum_f64
+#define stf_world_view              stf_world_view_f64
+#define stf_world_accelerations     stf_world_accelerations_f64
 #define stf_world_find_non_finite   stf_world_find_non_finite_f64
 #define stf_world_describe          stf_world_describe_f64
 

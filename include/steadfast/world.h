@@ -168,6 +168,21 @@ STF_API stf_result stf_world_energy(const stf_world *world, stf_energy *energy);
 STF_API stf_result stf_world_momentum(const stf_world *world, double momentum[STF_DIMENSIONS_MAX]);
 
 /*
+ * The particles where they stand, to read: positions, velocities and inverse masses of the whole world in its blocks, no copy;
+ * force is NULL. Valid until the world is changed. All zero for NULL.
+ */
+STF_API stf_particles stf_world_view(const stf_world *world);
+
+/*
+ * acceleration = a(time, position, velocity) in m/s^2, gravity and every force of this world as it stands, for any state that
+ * is asked about; the world is not changed. The three arrays do not overlap, are laid out as those of stf_world_view and as
+ * long, lanes behind the last particle included: stride x dimensions reals a block; aligned to 64 bytes if a force of your own
+ * relies on that. Errors: NULL. Cost: one call of every force; no allocation.
+ */
+STF_API stf_result stf_world_accelerations(const stf_world *world, double time, const stf_real *position,
+                                           const stf_real *velocity, stf_real *acceleration);
+
+/*
  * Whether any position or velocity is a NaN or an infinity; if so the lowest such particle goes to *index unless that is
  * NULL.
  */

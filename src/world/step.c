@@ -107,3 +107,15 @@ stf_result stf_world_step(stf_world *world, unsigned ticks)
     world->ticks += ticks;
     return STF_OK;
 }
+
+stf_result stf_world_accelerations(const stf_world *world, double time, const stf_real *position, const stf_real *velocity,
+                                   stf_real *acceleration)
+{
+    if (!world || !position || !velocity || !acceleration)
+        return STF_ERROR_NULL;
+
+    range r = make_range(world, 0, stf_world_blocks(world));
+
+    accelerate(&r.system, time, position, velocity, acceleration);
+    return STF_OK;
+}

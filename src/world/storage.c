@@ -147,6 +147,14 @@ stf_particles stf_world_particles(const stf_world *world, size_t first_block, si
     };
 }
 
+stf_particles stf_world_view(const stf_world *world)
+{
+    if (!world)
+        return (stf_particles){0};
+
+    return stf_world_particles(world, 0, stf_world_blocks(world), world->storage.position, world->storage.velocity, NULL);
+}
+
 stf_result stf_world_reserve(stf_world *world, size_t capacity)
 {
     if (!world)
