@@ -59,30 +59,34 @@ static int compare_springs(const void *left, const void *right)
     return order;
 }
 
-/* Springs that are computed together: a run, within one block at each end, or loose ones. */
+/* Springs that are computed together: a run, within one block at each end, or the loose ones of a block. */
 typedef struct stretch {
-    size_t first, count;
+    size_t first, count; /* of the springs, or of the loose ones */
     bool is_run;
 } stretch;
 
-/* Between any two runs may be one of loose springs. */
-static size_t stretches_max(size_t spring_count) { return 2 * (spring_count / RUN_MIN) + 1; }
-
-/* What stands behind the records: parameters as vectors are loaded, and the stretches. */
+/* What stands behind the records: stretches in the order of blocks, parameters as vectors are loaded, the loose springs. */
 typedef struct arrangement {
-    size_t stretch_count;
+    size_t stretch_count, loose_count;
     stretch *stretches;
     stf_real *stiffness, *damping, *rest_length;
+    stf_spring *loose;
 } arrangement;
+
+/* Behind any run may be one stretch of loose springs. */
+static size_t stretches_max(size_t spring_count) { return 2 * (spring_count / RUN_MIN) + 1; }
 
 static size_t arranged_size(size_t spring_count)
 {
-    const size_t each = 3 * sizeof(stf_real) + 2 * sizeof(stretch) / RUN_MIN + 1;
+    const size_t each = sizeof(stretch) + 3 * sizeof(stf_real) + sizeof(stf_spring);
 
-    if (spring_count > SIZE_MAX / 4 / each)
+    if (spring_count > SIZE_MAX / 2 / each)
         return SIZE_MAX;
-    return sizeof(arrangement) + 3 * spring_count * sizeof(stf_real) + stretches_max(spring_count) * sizeof(stretch);
+    return sizeof(arrangement) + stretches_max(spring_count) * sizeof(stretch) +
+           spring_count * (3 * sizeof(stf_real) + sizeof(stf_spring));
 }
+
+static bool same_block(uint32_t a, uint32_t b) { return a / STF_BLOCK_MAX == b / STF_BLOCK_MAX; }
 
 /* How many springs from here on are a run. */
 static size_t run_length(const stf_spring *springs, size_t count)
@@ -91,24 +95,35 @@ static size_t run_length(const stf_spring *springs, size_t count)
     size_t n = 1;
 
     while (n < count && lower(&springs[n]) == first_lower + n && upper(&springs[n]) == first_upper + n &&
-           lower(&springs[n]) % STF_BLOCK_MAX != 0 && upper(&springs[n]) % STF_BLOCK_MAX != 0)
+           same_block(lower(&springs[n]), first_lower) && same_block(upper(&springs[n]), first_upper))
         n++;
     return n;
 }
 
+static void add_stretch(arrangement *to, size_t first, size_t count, bool is_run)
+{
+    stretch *last = to->stretch_count > 0 ? &to->stretches[to->stretch_count - 1] : NULL;
+
+    if (count > 0 && !is_run && last && !last->is_run)
+        last->count += count;
+    else if (count > 0)
+        to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count, .is_run = is_run};
+}
+
 static void find_stretches(const stf_spring *springs, size_t spring_count, arrangement *found)
 {
-    stretch *last = NULL;
-    size_t n;
+    size_t added = 0; /* loose springs that are in a stretch */
 
-    found->stretch_count = 0;
-    for (size_t first = 0; first < spring_count; first += n) {
+    found->stretch_count = found->loose_count = 0;
+    for (size_t first = 0, n; first < spring_count; first += n) {
         n = run_length(springs + first, spring_count - first);
-        if (n >= RUN_MIN || !last || last->is_run) {
-            last = &found->stretches[found->stretch_count++];
-            *last = (stretch){.first = first, .count = n, .is_run = n >= RUN_MIN};
-        } else {
-            last->count += n;
+        if (n >= RUN_MIN)
+            add_stretch(found, first, n, true);
+        for (size_t i = first; n < RUN_MIN && i < first + n; i++)
+            found->loose[found->loose_count++] = springs[i];
+        if (first + n == spring_count || !same_block(lower(&springs[first + n]), lower(&springs[first]))) {
+            add_stretch(found, added, found->loose_count - added, false);
+            added = found->loose_count;
         }
     }
 }
@@ -123,6 +138,7 @@ static void spring_arrange(void *records, size_t record_count)
     arranged->stiffness = (stf_real *)(arranged->stretches + stretches_max(record_count));
     arranged->damping = arranged->stiffness + record_count;
     arranged->rest_length = arranged->damping + record_count;
+    arranged->loose = (stf_spring *)(arranged->rest_length + record_count);
     find_stretches(springs, record_count, arranged);
     for (size_t s = 0; s < record_count; s++) {
         arranged->stiffness[s] = springs[s].stiffness;
@@ -131,12 +147,12 @@ static void spring_arrange(void *records, size_t record_count)
     }
 }
 
-/* What is done with a stretch of springs: where its parameters start, and the state of the particles. */
-typedef struct work {
+/* A run: its springs, where their parameters start, and the state of the particles. */
+typedef struct run {
     const stf_spring *springs;
     const stf_real *stiffness, *damping, *rest_length;
     const stf_particles *all;
-} work;
+} run;
 
 static inline bool is_mine(const stf_particles *all, size_t particle) { return particle >= all->begin && particle < all->end; }
 
@@ -168,11 +184,11 @@ STF_INLINE void run_forces(unsigned dimensions, size_t n, size_t stride, const s
 }
 
 /* Springs at to at + n of a run. */
-static void run_part(size_t n, size_t at, const work *w, stf_real *newtons)
+static void run_part(size_t n, size_t at, const run *r, stf_real *newtons)
 {
-    const stf_particles *all = w->all;
-    const size_t a = stf_particles_offset(all, lower(w->springs)) + at, b = stf_particles_offset(all, upper(w->springs)) + at;
-    const stf_real *stiffness = w->stiffness + at, *damping = w->damping + at, *rest_length = w->rest_length + at;
+    const stf_particles *all = r->all;
+    const size_t a = stf_particles_offset(all, lower(r->springs)) + at, b = stf_particles_offset(all, upper(r->springs)) + at;
+    const stf_real *stiffness = r->stiffness + at, *damping = r->damping + at, *rest_length = r->rest_length + at;
     const stf_real *x = all->position, *v = all->velocity;
 
     newtons += at;
@@ -197,19 +213,19 @@ static void subtract(size_t n, stf_real *restrict force, const stf_real *restric
 }
 
 /* The ends of a run may overlap (a chain), so its forces are computed first and then added, end by end. */
-static void apply_run(size_t n, const work *w)
+static void apply_run(size_t n, const run *r)
 {
-    const stf_particles *all = w->all;
-    const size_t a = stf_particles_offset(all, lower(w->springs)), b = stf_particles_offset(all, upper(w->springs));
-    const bool a_is_mine = is_mine(all, lower(w->springs)), b_is_mine = is_mine(all, upper(w->springs));
+    const stf_particles *all = r->all;
+    const size_t a = stf_particles_offset(all, lower(r->springs)), b = stf_particles_offset(all, upper(r->springs));
+    const bool a_is_mine = is_mine(all, lower(r->springs)), b_is_mine = is_mine(all, upper(r->springs));
     const size_t whole = n / RUN_MIN * RUN_MIN;
     stf_real newtons[STF_DIMENSIONS_MAX * STF_BLOCK_MAX];
 
     if (!a_is_mine && !b_is_mine)
         return;
-    run_part(whole, 0, w, newtons);
+    run_part(whole, 0, r, newtons);
     if (whole < n)
-        run_part(RUN_MIN, n - RUN_MIN, w, newtons); /* some twice: cheaper than one by one */
+        run_part(RUN_MIN, n - RUN_MIN, r, newtons); /* some twice: cheaper than one by one */
     for (unsigned d = 0; d < all->dimensions && a_is_mine; d++)
         subtract(n, all->force + a + d * all->stride, newtons + d * STF_BLOCK_MAX);
     for (unsigned d = 0; d < all->dimensions && b_is_mine; d++)
@@ -219,42 +235,63 @@ static void apply_run(size_t n, const work *w)
 /* Loose springs that are gathered, computed and scattered at a time. */
 #define BATCH ((size_t)64)
 
-static void batch_factors(size_t n, stf_real *restrict factor, const stf_real *restrict square,
-                          const stf_real *restrict w_dot_d, const stf_real *restrict stiffness,
-                          const stf_real *restrict damping, const stf_real *restrict rest_length)
+typedef struct batch {
+    size_t a[BATCH], b[BATCH]; /* where their ends stand */
+    stf_real d[STF_DIMENSIONS_MAX][BATCH], square[BATCH], w_dot_d[BATCH];
+    stf_real stiffness[BATCH], damping[BATCH], rest_length[BATCH];
+} batch;
+
+static void batch_factors(size_t n, stf_real *restrict factor, const batch *restrict g)
 {
     for (size_t i = 0; i < n; i++)
-        factor[i] = stf_spring_factor(square[i], w_dot_d[i], stiffness[i], damping[i], rest_length[i]);
+        factor[i] = stf_spring_factor(g->square[i], g->w_dot_d[i], g->stiffness[i], g->damping[i], g->rest_length[i]);
 }
 
-STF_INLINE void apply_batch(unsigned dimensions, size_t n, const work *w)
+/* `all_mine` is a constant at each call as well: of a world that is not split every end is. */
+STF_INLINE void apply_batch(unsigned dimensions, bool all_mine, size_t n, const stf_spring *loose, const stf_particles *all)
 {
-    const stf_particles *all = w->all;
     const stf_real *x = all->position, *v = all->velocity;
-    stf_real d[BATCH][STF_DIMENSIONS_MAX], square[BATCH], w_dot_d[BATCH], factor[BATCH];
+    const size_t stride = all->stride;
+    stf_real factor[BATCH];
+    batch g;
 
-    for (size_t s = 0; s < n; s++) {
-        const size_t a = stf_particles_offset(all, w->springs[s].a), b = stf_particles_offset(all, w->springs[s].b);
-        square[s] = w_dot_d[s] = 0;
+    for (size_t i = 0; i < n; i++) {
+        const stf_spring *s = &loose[i];
+        const size_t a = stf_particles_offset(all, s->a), b = stf_particles_offset(all, s->b);
+        stf_real square = 0, w_dot_d = 0;
+
         for (unsigned k = 0; k < dimensions; k++) {
-            const size_t row = k * all->stride;
-            d[s][k] = x[a + row] - x[b + row];
-            square[s] += d[s][k] * d[s][k];
-            w_dot_d[s] += (v[a + row] - v[b + row]) * d[s][k];
+            const stf_real d = x[a + k * stride] - x[b + k * stride];
+            g.d[k][i] = d;
+            square += d * d;
+            w_dot_d += (v[a + k * stride] - v[b + k * stride]) * d;
         }
+        g.a[i] = a, g.b[i] = b, g.square[i] = square, g.w_dot_d[i] = w_dot_d;
+        g.stiffness[i] = s->stiffness, g.damping[i] = s->damping, g.rest_length[i] = s->rest_length;
     }
-    batch_factors(n, factor, square, w_dot_d, w->stiffness, w->damping, w->rest_length);
-    for (size_t s = 0; s < n; s++) {
-        const size_t a = stf_particles_offset(all, w->springs[s].a), b = stf_particles_offset(all, w->springs[s].b);
-        const bool a_is_mine = is_mine(all, w->springs[s].a), b_is_mine = is_mine(all, w->springs[s].b);
-        for (unsigned k = 0; k < dimensions; k++) {
-            const stf_real newtons = factor[s] * d[s][k];
-            if (a_is_mine)
-                all->force[a + k * all->stride] -= newtons;
-            if (b_is_mine)
-                all->force[b + k * all->stride] += newtons;
-        }
+    batch_factors(n, factor, &g);
+    for (size_t i = 0; i < n; i++) {
+        const bool a_is_mine = all_mine || is_mine(all, loose[i].a), b_is_mine = all_mine || is_mine(all, loose[i].b);
+
+        for (unsigned k = 0; k < dimensions && a_is_mine; k++)
+            all->force[g.a[i] + k * stride] -= factor[i] * g.d[k][i];
+        for (unsigned k = 0; k < dimensions && b_is_mine; k++)
+            all->force[g.b[i] + k * stride] += factor[i] * g.d[k][i];
     }
+}
+
+static void apply_loose(size_t n, const stf_spring *loose, const stf_particles *all)
+{
+    const bool all_mine = all->begin == 0 && all->end == all->count;
+
+    if (all->dimensions == 1)
+        apply_batch(1, false, n, loose, all);
+    else if (all->dimensions == 2)
+        apply_batch(2, false, n, loose, all);
+    else if (!all_mine)
+        apply_batch(3, false, n, loose, all);
+    else
+        apply_batch(3, true, n, loose, all);
 }
 
 static void spring_apply(const void *records, size_t record_count, const stf_particles *all, double time)
@@ -263,22 +300,15 @@ static void spring_apply(const void *records, size_t record_count, const stf_par
     const arrangement *arranged = stf_force_arranged(records, record_count, sizeof *springs);
     (void)time;
 
-    for (const stretch *s = arranged->stretches; s < arranged->stretches + arranged->stretch_count; s++)
-        for (size_t done = 0, n; done < s->count; done += n) {
-            const size_t first = s->first + done, left = s->count - done;
-            const work w = {springs + first, arranged->stiffness + first, arranged->damping + first,
-                            arranged->rest_length + first, all};
+    for (const stretch *s = arranged->stretches; s < arranged->stretches + arranged->stretch_count; s++) {
+        const run r = {springs + s->first, arranged->stiffness + s->first, arranged->damping + s->first,
+                       arranged->rest_length + s->first, all};
 
-            n = s->is_run || left < BATCH ? left : BATCH;
-            if (s->is_run)
-                apply_run(n, &w);
-            else if (all->dimensions == 1)
-                apply_batch(1, n, &w);
-            else if (all->dimensions == 2)
-                apply_batch(2, n, &w);
-            else
-                apply_batch(3, n, &w);
-        }
+        if (s->is_run)
+            apply_run(s->count, &r);
+        for (size_t done = 0; done < s->count && !s->is_run; done += BATCH)
+            apply_loose(s->count - done < BATCH ? s->count - done : BATCH, arranged->loose + s->first + done, all);
+    }
 }
 
 static double spring_potential(const void *records, size_t record_count, const stf_particles *all, double time)

@@ -6,14 +6,24 @@
 #define SMALLEST_STRIDE 16
 
 /* More rows than any lane has: 3 dimensions x (state, previous, history and work arrays), inverse mass, radius. */
-#define ROWS_BOUND (STF_DIMENSIONS_MAX * (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX) + 2)
+#define ARRAYS_BOUND (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX)
+#define ROWS_BOUND (STF_DIMENSIONS_MAX * ARRAYS_BOUND + 2)
+
+/*
+ * A load that follows a store to the same place of another page waits for it (the "4K aliasing" of x86 manuals), and blocks are
+ * whole quarters of pages: arrays of several blocks each start at another place of a page. Measured: 0.47 ns a particle and
+ * step become 0.36 where they all start at the same.
+ */
+#define PAGE ((size_t)4096)
+#define STAGGER ((size_t)(11 * STF_ALIGNMENT))
 
 /* Gives `reals` of the memory to an array; counts only, where there is no memory yet. */
 static stf_real *take(stf_storage *storage, size_t reals)
 {
-    const size_t at = storage->bytes;
+    const size_t bytes = reals * sizeof(stf_real), place = storage->taken++ * STAGGER % PAGE;
+    const size_t at = bytes < PAGE ? storage->bytes : (storage->bytes + PAGE - 1 - place) / PAGE * PAGE + place;
 
-    storage->bytes += reals * sizeof(stf_real);
+    storage->bytes = at + bytes;
     return storage->memory ? (stf_real *)(void *)((char *)storage->memory + at) : NULL;
 }
 
@@ -23,7 +33,7 @@ static void lay_out(stf_storage *storage, const stf_world *world)
     const size_t parts = stf_world_parts(world, storage->capacity / storage->stride);
     const size_t work = storage->whole ? vectors : parts * storage->stride * world->dimensions;
 
-    storage->bytes = 0;
+    storage->bytes = storage->taken = 0;
     storage->position = take(storage, vectors);
     storage->velocity = take(storage, vectors);
     storage->inverse_mass = take(storage, storage->capacity);
@@ -109,7 +119,7 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
     if (old->memory && capacity <= old->capacity && integrator->work_arrays <= old->work_arrays &&
         integrator->history_arrays <= old->history_arrays && whole <= old->whole)
         return STF_OK;
-    if (capacity > SIZE_MAX / sizeof(stf_real) / ROWS_BOUND - STF_BLOCK_MAX)
+    if (capacity > (SIZE_MAX - (ARRAYS_BOUND + 2) * PAGE) / sizeof(stf_real) / ROWS_BOUND - STF_BLOCK_MAX)
         return STF_ERROR_MEMORY;
 
     stf_storage new = {.whole = whole || old->whole,

@@ -30,6 +30,7 @@
 typedef struct stf_storage {
     void *memory;
     size_t bytes;
+    size_t taken;    /* arrays that have got their place */
     size_t capacity; /* particles: a whole number of blocks */
     size_t stride;   /* particles a block, a power of two */
     unsigned shift;  /* stride == 1 << shift */

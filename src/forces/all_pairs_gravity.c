@@ -1,0 +1,209 @@
+/* Gravitation of every particle by every other; sources as in attractor.c. */
+#include <string.h>
+
+#include "distance.h"
+#include "steadfast/force.h"
+
+static stf_result all_pairs_check(const void *record, unsigned dimensions, size_t particle_count)
+{
+    const stf_all_pairs_gravity *gravity = record;
+    (void)dimensions, (void)particle_count;
+
+    return isfinite(gravity->gravitational_constant) && stf_is_coefficient(gravity->softening) ? STF_OK
+                                                                                               : STF_ERROR_PARAMETERS;
+}
+
+/*
+ * Pairs are taken tile by tile, a tile being the particles of one block, and of two different tiles each pair only once: square
+ * root and division are what it costs. A tile's sum over another is finished before it is added to the newtons, so that it does
+ * not matter who computes the other end.
+ */
+typedef struct tile {
+    size_t stride;                    /* lanes; those that hold no particle have no strength */
+    const stf_real *x;                /* rows */
+    stf_real strength[STF_BLOCK_MAX]; /* G m; 0: the immovable */
+    stf_real a[STF_DIMENSIONS_MAX * STF_BLOCK_MAX]; /* rows of the accelerations by one other tile */
+} tile;
+
+/* Sums over lanes are made in so many places at once, on every machine. */
+#define PLACES ((size_t)16)
+
+/* By halves, so that vectors are added as long as there are any. */
+STF_INLINE stf_real sum_of(stf_real *sums)
+{
+    for (size_t half = PLACES / 2; half > 0; half /= 2)
+        for (size_t k = 0; k < half; k++)
+            sums[k] += sums[k + half];
+    return sums[0];
+}
+
+/*
+ * One particle at p and the lanes of a tile: a = -G m d / (|d|^2 + e^2)^(3/2) of each by the other, with two factors, as the cube
+ * of a distance leaves the reals long before the force does. `dimensions` and whose end is wanted are constants at each call, so
+ * the compiler makes a loop for each.
+ */
+STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size_t stride, const stf_real *restrict x,
+                           const stf_real *restrict strength, stf_real *restrict a, const stf_real *restrict p,
+                           stf_real p_strength, stf_real softening_square, stf_real *restrict p_a)
+{
+    const stf_real px = p[0], py = dimensions > 1 ? p[stride] : 0, pz = dimensions > 2 ? p[2 * stride] : 0;
+    stf_real sum_x[PLACES] = {0}, sum_y[PLACES] = {0}, sum_z[PLACES] = {0};
+
+    for (size_t first = 0; first < stride; first += PLACES)
+        for (size_t k = 0; k < PLACES; k++) {
+            const size_t i = first + k;
+            const stf_real dx = px - x[i];
+            const stf_real dy = dimensions > 1 ? py - x[stride + i] : 0;
+            const stf_real dz = dimensions > 2 ? pz - x[2 * stride + i] : 0;
+            const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
+            const stf_real reciprocal = 1 / stf_sqrt(square), inverse = square > 0 ? reciprocal : 0;
+            const stf_real ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
+            const stf_real by_p = p_strength * inverse * inverse, by_lane = strength[i] * inverse * inverse;
+
+            if (lanes_end) {
+                a[i] += by_p * ux;
+                if (dimensions > 1)
+                    a[STF_BLOCK_MAX + i] += by_p * uy;
+                if (dimensions > 2)
+                    a[2 * STF_BLOCK_MAX + i] += by_p * uz;
+            }
+            if (p_end) {
+                sum_x[k] += by_lane * ux;
+                sum_y[k] += by_lane * uy;
+                sum_z[k] += by_lane * uz;
+            }
+        }
+    if (p_end) {
+        p_a[0] -= sum_of(sum_x);
+        p_a[STF_BLOCK_MAX] -= sum_of(sum_y);
+        p_a[2 * STF_BLOCK_MAX] -= sum_of(sum_z);
+    }
+}
+
+/* Every particle of `from` and the lanes of `to`. */
+STF_INLINE void pull_tiles(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
+{
+    for (size_t j = 0; j < from->stride; j++)
+        if (from->strength[j] != 0)
+            pull_lanes(dimensions, to_end, from_end, to->stride, to->x, to->strength, to->a, from->x + j, from->strength[j],
+                       softening_square, from->a + j);
+}
+
+STF_INLINE void pull_ends(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
+{
+    if (to_end && from_end)
+        pull_tiles(dimensions, true, true, from, to, softening_square);
+    else if (to_end)
+        pull_tiles(dimensions, true, false, from, to, softening_square);
+    else
+        pull_tiles(dimensions, false, true, from, to, softening_square);
+}
+
+static void pull(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
+{
+    if (dimensions == 1)
+        pull_ends(1, to_end, from_end, from, to, softening_square);
+    else if (dimensions == 2)
+        pull_ends(2, to_end, from_end, from, to, softening_square);
+    else
+        pull_ends(3, to_end, from_end, from, to, softening_square);
+}
+
+static void strengths(size_t n, stf_real *restrict strength, const stf_real *restrict inverse_mass, stf_real constant)
+{
+    for (size_t i = 0; i < n; i++) {
+        const stf_real with_mass = constant / inverse_mass[i];
+        strength[i] = inverse_mass[i] > 0 ? with_mass : 0;
+    }
+}
+
+static void open_tile(tile *t, const stf_particles *all, size_t first, stf_real constant)
+{
+    t->stride = all->stride;
+    t->x = all->position + stf_particles_offset(all, first);
+    memset(t->a, 0, sizeof t->a);
+    strengths(t->stride, t->strength, all->inverse_mass + first, constant);
+}
+
+/* F = m a, where the particle has a mass. */
+static void add_row(size_t n, stf_real *restrict force, const stf_real *restrict a, const stf_real *restrict inverse_mass)
+{
+    for (size_t i = 0; i < n; i++) {
+        const stf_real newtons = a[i] / inverse_mass[i];
+        force[i] += inverse_mass[i] > 0 ? newtons : 0;
+    }
+}
+
+static void add_forces(const stf_particles *all, size_t first, const tile *t)
+{
+    for (unsigned d = 0; d < all->dimensions; d++)
+        add_row(t->stride, all->force + stf_particles_offset(all, first) + d * t->stride, t->a + d * STF_BLOCK_MAX,
+                all->inverse_mass + first);
+}
+
+/* A tile by itself has one end only, each of whose particles pulls all others. */
+static void pull_pair(const stf_particles *all, size_t first, size_t second, stf_all_pairs_gravity gravity)
+{
+    const bool first_is_mine = first >= all->begin && first < all->end;
+    const bool second_is_mine = second >= all->begin && second < all->end;
+    const bool both = first != second && first_is_mine;
+    tile from, to;
+
+    if (!first_is_mine && !second_is_mine)
+        return;
+    open_tile(&from, all, first, gravity.gravitational_constant);
+    open_tile(&to, all, second, gravity.gravitational_constant);
+    pull(all->dimensions, second_is_mine, both, &from, &to, gravity.softening * gravity.softening);
+    if (both)
+        add_forces(all, first, &from);
+    if (second_is_mine)
+        add_forces(all, second, &to);
+}
+
+static void all_pairs_apply(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    const stf_all_pairs_gravity *gravity = records;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++)
+        for (size_t first = 0; first < all->count; first += all->stride)
+            for (size_t second = first; second < all->count; second += all->stride)
+                pull_pair(all, first, second, gravity[r]);
+}
+
+static double pair_potential(const stf_particles *all, size_t i, size_t j, stf_all_pairs_gravity gravity)
+{
+    const stf_real *xi = all->position + stf_particles_offset(all, i), *xj = all->position + stf_particles_offset(all, j);
+    const double softening = (double)gravity.softening;
+    const double square = softening * softening + stf_square_between(xi, all->stride, xj, all->stride, all->dimensions);
+
+    if (!(square > 0))
+        return 0;
+    return -(double)gravity.gravitational_constant /
+           ((double)all->inverse_mass[i] * (double)all->inverse_mass[j] * sqrt(square));
+}
+
+static double all_pairs_potential(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    const stf_all_pairs_gravity *gravity = records;
+    double sum = 0;
+    (void)time;
+
+    for (size_t r = 0; r < record_count; r++)
+        for (size_t i = 0; i < all->count; i++)
+            for (size_t j = 0; j < i; j++)
+                if (all->inverse_mass[i] > 0 && all->inverse_mass[j] > 0)
+                    sum += pair_potential(all, i, j, gravity[r]);
+    return sum;
+}
+
+const stf_force stf_force_all_pairs_gravity = {
+    .name = "all_pairs_gravity",
+    .kind = STF_LINK,
+    .splits = true,
+    .depends_on = STF_ON_POSITION,
+    .record_size = sizeof(stf_all_pairs_gravity),
+    .apply = all_pairs_apply,
+    .potential = all_pairs_potential,
+    .check = all_pairs_check,
+};
