@@ -53,15 +53,14 @@ static double time_runs(const measure_case *c, void *context, unsigned runs)
     return measure_now() - start;
 }
 
-/* The runs that fill a sample; *round grows by what such a sample takes, its warming up included. */
-static unsigned calibrate(const measure_case *c, void *context, double sample, double *round)
+/* The runs that fill a sample. */
+static unsigned calibrate(const measure_case *c, void *context, double sample)
 {
     unsigned runs = 1;
-    double taken = time_runs(c, context, runs);
+    double taken;
 
     while (!c->prepare && (taken = time_runs(c, context, runs)) < sample && runs < 1u << 30)
         runs = taken < sample / 4 ? runs * 4 : runs * 2;
-    *round += taken + (c->prepare ? 0 : taken / runs);
     return runs;
 }
 
@@ -83,35 +82,37 @@ static void summarise(measure_result *result)
     result->max = sorted[result->rounds - 1];
 }
 
-static unsigned rounds_of(const measure_plan *plan, double round)
+/* A round after the other until time is up, but no fewer than the least. */
+static void run_rounds(const measure_case *cases, size_t count, const measure_plan *plan, void **contexts,
+                       measure_result *results)
 {
     const unsigned asked = plan->rounds ? plan->rounds : DEFAULT_ROUNDS;
     const unsigned most = asked < MEASURE_ROUNDS_MAX ? asked : MEASURE_ROUNDS_MAX;
     const unsigned least = most < ROUNDS_MIN ? most : ROUNDS_MIN;
-    const double fit = (plan->total > 0 ? plan->total : DEFAULT_TOTAL) / round;
+    const double end = measure_now() + (plan->total > 0 ? plan->total : DEFAULT_TOTAL);
 
-    return fit < least ? least : fit > most ? most : (unsigned)fit;
+    for (unsigned r = 0; r < most && (r < least || measure_now() < end); r++)
+        for (size_t i = 0; i < count; i++)
+            if (contexts[i])
+                take_sample(&cases[i], contexts[i], &results[i]);
 }
 
 void measure(const measure_case *cases, size_t count, const measure_plan *plan, measure_result *results)
 {
     const double sample = plan->sample > 0 ? plan->sample : DEFAULT_SAMPLE;
     void **contexts = calloc(count, sizeof *contexts);
-    double round = 0;
 
     memset(results, 0, count * sizeof *results);
-    for (size_t i = 0; contexts && i < count; i++) {
+    if (!contexts)
+        return;
+    for (size_t i = 0; i < count; i++) {
         contexts[i] = cases[i].setup(cases[i].argument);
         results[i].measured = contexts[i] != NULL;
         if (contexts[i])
-            results[i].runs = calibrate(&cases[i], contexts[i], sample, &round);
+            results[i].runs = calibrate(&cases[i], contexts[i], sample);
     }
-    const unsigned rounds = rounds_of(plan, round);
-    for (unsigned r = 0; contexts && r < rounds; r++)
-        for (size_t i = 0; i < count; i++)
-            if (contexts[i])
-                take_sample(&cases[i], contexts[i], &results[i]);
-    for (size_t i = 0; contexts && i < count; i++)
+    run_rounds(cases, count, plan, contexts, results);
+    for (size_t i = 0; i < count; i++)
         if (contexts[i]) {
             summarise(&results[i]);
             if (cases[i].teardown)

@@ -27,7 +27,7 @@ typedef struct measure_case {
 /* How long to measure. Where all is 0 the defaults count. */
 typedef struct measure_plan {
     double sample;   /* s a sample at least; 0: 4 ms */
-    double total;    /* s for all rounds of a list, or what MEASURE_ROUNDS_MIN of them take; 0: 1 s */
+    double total;    /* s, after which no further round starts, but at least three are run if so many are asked for; 0: 1 s */
     unsigned rounds; /* at most; 0: 15 */
 } measure_plan;
 
