@@ -26,9 +26,11 @@ typedef struct reference_law {
  * A step of n particles, or another pass over them. Arrays a component, one after another: plain parameters with `restrict`,
  * as gcc 12 makes no vector loop of pointers that it finds in a struct. a: kept accelerations (velocity Verlet) or forces.
  */
-typedef void reference_step(size_t n, stf_real *restrict x, stf_real *restrict y, stf_real *restrict z, stf_real *restrict vx,
-                            stf_real *restrict vy, stf_real *restrict vz, stf_real *restrict ax, stf_real *restrict ay,
-                            stf_real *restrict az, const stf_real *restrict w, const reference_law *law);
+#define REFERENCE_STEP                                                                                                     \
+    size_t n, stf_real *restrict x, stf_real *restrict y, stf_real *restrict z, stf_real *restrict vx, stf_real *restrict vy, \
+        stf_real *restrict vz, stf_real *restrict ax, stf_real *restrict ay, stf_real *restrict az,                       \
+        const stf_real *restrict w, const reference_law *law
+typedef void reference_step(REFERENCE_STEP);
 
 /* Springs whose first ends are consecutive particles, and whose second ends are. */
 typedef struct reference_run {
@@ -62,10 +64,9 @@ typedef struct reference {
     reference_step *push;        /* semi-implicit Euler with gravity and the forces in a */
     reference_step *update;      /* x += w, ..., vz += w: semi-implicit Euler's traffic without its arithmetic */
     reference_step *add_multiply; /* x = x * drag + dt, REFERENCE_CHAIN times in a row, for all nine that are not w */
-    void (*copy)(size_t n, stf_real *restrict to, const stf_real *restrict from);
+    reference_step *copy;         /* a = -x: bandwidth from one place to another */
     void (*run_forces)(const reference_bodies *bodies);  /* a = spring forces */
     void (*edge_forces)(const reference_bodies *bodies); /* a = spring forces */
-    void (*packed_edge_forces)(const reference_bodies *bodies);
     void (*all_pairs)(const reference_bodies *bodies, const reference_law *law); /* a = gravity, N; packed: scratch */
 } reference;
 

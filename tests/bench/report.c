@@ -6,7 +6,7 @@ void bench_print_header(FILE *file, bool pinned)
 {
     fprintf(file, "%s, %s, %s; %s\n", measure_processor(), measure_compiler(), bench_isa(),
             pinned ? "pinned to one core" : "not pinned to a core: this system has no way to");
-    fprintf(file, "Median, least and most of interleaved samples; ratios within a round. * marks a library's row over its target.\n\n");
+    fprintf(file, "Median, least and most of interleaved samples; ratios within a round. * marks what misses its target.\n\n");
     fprintf(file, TABLE, "row", "real", "n", "unit", "median", "min", "max", "to reference", "target", "");
 }
 

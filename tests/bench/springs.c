@@ -107,7 +107,7 @@ reference_edge *bench_edges(const bench_scene *scene)
         graph_edges(scene, edges);
     if (scene->form == LIBRARY_SHUFFLED)
         shuffle(edges, count);
-    if (scene->form == EDGES_SORTED || scene->form == PACKED_SORTED)
+    if (scene->form == EDGES_SORTED)
         qsort(edges, count, sizeof *edges, by_ends);
     return edges;
 }
@@ -123,7 +123,8 @@ bool bench_cloth_runs(const bench_scene *scene, reference_bodies *bodies)
     stf_real *reals = malloc(3 * springs * sizeof *reals);
     size_t at = 0;
 
-    bodies->runs = runs, bodies->stiffness = reals, bodies->damping = reals + springs, bodies->rest_length = reals + 2 * springs;
+    bodies->runs = runs;
+    bodies->stiffness = reals, bodies->damping = reals + springs, bodies->rest_length = reals + 2 * springs;
     for (size_t f = 0; runs && reals && f < FAMILIES; f++) {
         const size_t rows = side - families[f].down, columns = side - families[f].right;
         for (size_t row = 0; row < rows; row++) {

@@ -36,15 +36,13 @@ static void run_pairs(subject *s)
     run_step(s);
 }
 
-static void run_copy(subject *s) { reference_chosen()->copy(s->bodies.n, s->bodies.a[0], s->bodies.x[0]); }
-
 static reference_step *step_of(const bench_scene *scene)
 {
     const reference *r = reference_chosen();
     const stf_integrator *integrator = stf_integrator_find(scene->integrator);
 
     if (scene->kind == MACHINE)
-        return scene->form == ADD_MULTIPLY ? r->add_multiply : r->update;
+        return scene->form == ADD_MULTIPLY ? r->add_multiply : r->copy;
     if (scene->kind == FIELD)
         return r->rk4_field;
     if (scene->kind != FREE)
@@ -57,17 +55,14 @@ static reference_step *step_of(const bench_scene *scene)
 static void choose_loops(subject *s, const bench_scene *scene)
 {
     const reference *r = reference_chosen();
-    const bool packed = scene->form == PACKED || scene->form == PACKED_SORTED;
 
     s->step = step_of(scene);
     s->run = run_step;
-    if (scene->form == COPY)
-        s->run = run_copy;
     if (scene->kind == PAIRS)
         s->run = run_pairs;
     if (scene->kind == CLOTH || scene->kind == GRAPH) {
         s->run = run_springs;
-        s->forces = scene->form == REFERENCE ? r->run_forces : packed ? r->packed_edge_forces : r->edge_forces;
+        s->forces = scene->form == REFERENCE ? r->run_forces : r->edge_forces;
     }
 }
 

@@ -26,8 +26,6 @@ typedef enum bench_form {
     REFERENCE,        /* the loop of the integrator; of springs, runs; of pairs, tiles */
     EDGES,            /* a gather and a scatter a spring */
     EDGES_SORTED,     /* by first end, then by second */
-    PACKED,           /* as EDGES, position and velocity of a particle side by side */
-    PACKED_SORTED,
     UPDATE,           /* reads and writes what semi-implicit Euler does */
     COPY,
     ADD_MULTIPLY

@@ -28,15 +28,12 @@
 #define reference_add_multiply NAME(reference_add_multiply)
 #define reference_run_forces NAME(reference_run_forces)
 #define reference_edge_forces NAME(reference_edge_forces)
-#define reference_packed_edge_forces NAME(reference_packed_edge_forces)
 #define reference_all_pairs NAME(reference_all_pairs)
 
 extern reference_step reference_semi_implicit_euler, reference_velocity_verlet, reference_rk4, reference_rk4_field,
-    reference_push, reference_update, reference_add_multiply;
-void reference_copy(size_t n, stf_real *restrict to, const stf_real *restrict from);
+    reference_push, reference_update, reference_copy, reference_add_multiply;
 void reference_run_forces(const reference_bodies *bodies);
 void reference_edge_forces(const reference_bodies *bodies);
-void reference_packed_edge_forces(const reference_bodies *bodies);
 void reference_all_pairs(const reference_bodies *bodies, const reference_law *law);
 
 #endif

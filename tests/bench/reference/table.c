@@ -17,6 +17,5 @@ const reference NAME(reference) = {
     .copy = reference_copy,
     .run_forces = reference_run_forces,
     .edge_forces = reference_edge_forces,
-    .packed_edge_forces = reference_packed_edge_forces,
     .all_pairs = reference_all_pairs,
 };
