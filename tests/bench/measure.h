@@ -1,6 +1,7 @@
 /*
  * measure: what a piece of code costs, on one core, beside others. Cases of one list are measured in turns, round after round,
  * so that what slows the machine for a while slows all of them: a ratio is taken within each round, and its median counts.
+ * Time in which another process had the core does not count. What waits or sleeps can't be measured with it.
  */
 #ifndef STEADFAST_TESTS_MEASURE_H
 #define STEADFAST_TESTS_MEASURE_H
