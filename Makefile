@@ -22,14 +22,23 @@ MODE  := $(if $(SAN),sanitize,release)
 BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
 
 # What holds no reals exists once; all else is compiled for float and for double.
-ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c
+ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c src/sort.c
 TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
+
+# The hot files once more for each instruction set that the compiler has; the world picks one at run time (src/variant.h).
+HOT_SOURCES  := src/kernels.c $(filter-out %/list.c,$(wildcard src/integrators/*.c)) $(wildcard src/forces/*.c)
+FLAGS_avx2   := -mavx2
+FLAGS_avx512 := -mavx512f -mavx512vl -mavx512bw -mavx512dq -mprefer-vector-width=512
+has           = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo yes)
+ISAS         := $(if $(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),$(foreach isa,avx2 avx512,$(if $(call has,$(FLAGS_$(isa))),$(isa))))
+HAS_ISAS     := $(if $(filter avx2,$(ISAS)),-DSTF_HAS_AVX2) $(if $(filter avx512,$(ISAS)),-DSTF_HAS_AVX512)
 DEMO_SOURCES  := $(wildcard demo/*.c)
 HEADERS       := $(wildcard include/steadfast/*.h)
 
 LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
-                   $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+                   $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o) \
+                   $(foreach isa,$(ISAS),$(HOT_SOURCES:%.c=$(BUILD)/f32-$(isa)/%.o) $(HOT_SOURCES:%.c=$(BUILD)/f64-$(isa)/%.o))
 DEMO_OBJECTS    := $(DEMO_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o)
 
 TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
@@ -130,6 +139,20 @@ $(BUILD)/f32/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
 $(BUILD)/f64/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
 	$(say)$(COMPILE) -DSTF_DOUBLE -c $< -o $@
+
+$(BUILD)/f32/src/instructions.o $(BUILD)/f64/src/instructions.o: CPPFLAGS += $(HAS_ISAS)
+
+define variant
+$$(BUILD)/f32-$(1)/src/%.o: src/%.c Makefile | $$(DEPS_FIRST)
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $$(FLAGS_$(1)) -DSTF_VARIANT=$(1) -c $$< -o $$@
+
+$$(BUILD)/f64-$(1)/src/%.o: src/%.c Makefile | $$(DEPS_FIRST)
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $$(FLAGS_$(1)) -DSTF_VARIANT=$(1) -DSTF_DOUBLE -c $$< -o $$@
+
+endef
+$(foreach isa,$(ISAS),$(eval $(call variant,$(isa))))
 
 $(STATIC): $(LIBRARY_OBJECTS)
 	@rm -f $@
