@@ -45,20 +45,15 @@ TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
 TESTS           := $(TEST_NAMES:%=$(BUILD)/tests/%-f32) $(TEST_NAMES:%=$(BUILD)/tests/%-f64)
 
-# The benchmark. Its references are compiled for each instruction set that the compiler knows here.
-x86_flags_baseline :=
-x86_flags_avx2     := -mavx2
-x86_flags_avx512   := -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512
-X86_SETS := $(if $(findstring x86_64,$(shell $(CC) -dumpmachine)),$(shell echo 'int x;' | \
-            $(CC) $(x86_flags_avx512) $(x86_flags_avx2) -x c -c - -o /dev/null 2>/dev/null && echo avx2 avx512))
-ISAS     := baseline $(X86_SETS)
-REFERENCE_SOURCES  := $(wildcard tests/bench/reference/*.c)
+# The benchmark. Its references are compiled for each instruction set, as the library's hot files are.
+BENCH_ISAS          := baseline $(ISAS)
+REFERENCE_SOURCES   := $(wildcard tests/bench/reference/*.c)
 BENCH_TWICE_SOURCES := $(addprefix tests/bench/,bodies.c chosen.c springs.c workload.c)
-BENCH_ONCE_SOURCES := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
-BENCH_OBJECTS      := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
-                      $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
-REFERENCE_OBJECTS  := $(foreach isa,$(ISAS),$(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f32/reference-$(isa)/%.o) \
-                     $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f64/reference-$(isa)/%.o))
+BENCH_ONCE_SOURCES  := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
+BENCH_OBJECTS       := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
+                       $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+REFERENCE_OBJECTS   := $(foreach isa,$(BENCH_ISAS),$(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f32/reference-$(isa)/%.o) \
+                       $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f64/reference-$(isa)/%.o))
 
 STATIC := $(BUILD)/libsteadfast.a
 ifeq ($(shell uname -s),Darwin)
@@ -232,21 +227,21 @@ bench: $(BENCH)
 define reference_rules
 $(BUILD)/f32/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
 	@mkdir -p $$(@D)
-	$$(say)$$(COMPILE) $(x86_flags_$(1)) -DREFERENCE_ISA=$(1) -c $$< -o $$@
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -c $$< -o $$@
 
 $(BUILD)/f64/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
 	@mkdir -p $$(@D)
-	$$(say)$$(COMPILE) $(x86_flags_$(1)) -DREFERENCE_ISA=$(1) -DSTF_DOUBLE -c $$< -o $$@
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -DSTF_DOUBLE -c $$< -o $$@
 endef
-$(foreach isa,$(ISAS),$(eval $(call reference_rules,$(isa))))
+$(foreach isa,$(BENCH_ISAS),$(eval $(call reference_rules,$(isa))))
 
 $(BUILD)/f32/tests/bench/%.o: tests/bench/%.c Makefile
 	@mkdir -p $(@D)
-	$(say)$(COMPILE) $(if $(X86_SETS),-DBENCH_X86_SETS) -c $< -o $@
+	$(say)$(COMPILE) $(HAS_ISAS) -c $< -o $@
 
 $(BUILD)/f64/tests/bench/%.o: tests/bench/%.c Makefile
 	@mkdir -p $(@D)
-	$(say)$(COMPILE) $(if $(X86_SETS),-DBENCH_X86_SETS) -DSTF_DOUBLE -c $< -o $@
+	$(say)$(COMPILE) $(HAS_ISAS) -DSTF_DOUBLE -c $< -o $@
 
 $(BENCH): $(BENCH_OBJECTS) $(REFERENCE_OBJECTS) $(STATIC)
 	$(say)$(LINK) $^ -lm -o $@
