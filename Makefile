@@ -244,7 +244,7 @@ $(BUILD)/f64/tests/bench/%.o: tests/bench/%.c Makefile
 	$(say)$(COMPILE) $(HAS_ISAS) -DSTF_DOUBLE -c $< -o $@
 
 $(BENCH): $(BENCH_OBJECTS) $(REFERENCE_OBJECTS) $(STATIC)
-	$(say)$(LINK) $^ -lm -o $@
+	$(say)$(LINK) $^ -lm -pthread -o $@
 
 # ---- dependencies, installation -----------------------------------------------------------------------------------------------
 

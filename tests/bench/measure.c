@@ -151,14 +151,10 @@ bool measure_pin(void)
     return sched_getaffinity(0, sizeof allowed, &allowed) == 0 && core >= 0 && sched_setaffinity(0, sizeof one, &one) == 0;
 }
 
-void measure_unpin(void)
-{
-    if (CPU_COUNT(&allowed) > 0)
-        sched_setaffinity(0, sizeof allowed, &allowed);
-}
+bool measure_unpin(void) { return CPU_COUNT(&allowed) > 0 && sched_setaffinity(0, sizeof allowed, &allowed) == 0; }
 #else
 bool measure_pin(void) { return false; }
-void measure_unpin(void) {}
+bool measure_unpin(void) { return false; }
 #endif
 
 const char *measure_processor(void)
