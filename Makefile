@@ -52,8 +52,8 @@ BENCH_TWICE_SOURCES := $(addprefix tests/bench/,bodies.c chosen.c springs.c work
 BENCH_ONCE_SOURCES  := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
 BENCH_OBJECTS       := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
                        $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
-REFERENCE_OBJECTS   := $(foreach isa,$(BENCH_ISAS),$(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f32/reference-$(isa)/%.o) \
-                       $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f64/reference-$(isa)/%.o))
+REFERENCE_OBJECTS   := $(foreach isa,$(BENCH_ISAS),$(foreach precision,f32 f64,\
+                       $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/$(precision)/reference-$(isa)/%.o)))
 
 STATIC := $(BUILD)/libsteadfast.a
 ifeq ($(shell uname -s),Darwin)

@@ -115,10 +115,18 @@ static void print_summary(const run *r)
 static bool check_all(void)
 {
     static const bench_scene scenes[] = {
-        {FREE, REFERENCE, "semi_implicit_euler", 777}, {FREE, REFERENCE, "velocity_verlet", 777}, {FREE, REFERENCE, "rk4", 777},
-        {FIELD, REFERENCE, "rk4", 777},                {CLOTH, REFERENCE, NULL, 23 * 23},         {CLOTH, EDGES, NULL, 23 * 23},
-        {GRAPH, EDGES, NULL, 777},                     {GRAPH, EDGES_SORTED, NULL, 777},          {PAIRS, REFERENCE, NULL, 777},
-        {FREE, LIBRARY_THREADS, "rk4", 7777},          {CLOTH, LIBRARY_THREADS, NULL, 64 * 64},  {PAIRS, LIBRARY_THREADS, NULL, 777},
+        {FREE, REFERENCE, "semi_implicit_euler", 777},
+        {FREE, REFERENCE, "velocity_verlet", 777},
+        {FREE, REFERENCE, "rk4", 777},
+        {FIELD, REFERENCE, "rk4", 777},
+        {CLOTH, REFERENCE, NULL, 23 * 23},
+        {CLOTH, EDGES, NULL, 23 * 23},
+        {GRAPH, EDGES, NULL, 777},
+        {GRAPH, EDGES_SORTED, NULL, 777},
+        {PAIRS, REFERENCE, NULL, 777},
+        {FREE, LIBRARY_THREADS, "rk4", 7777},
+        {CLOTH, LIBRARY_THREADS, NULL, 64 * 64},
+        {PAIRS, LIBRARY_THREADS, NULL, 777},
     };
     const bench_precision *const precisions[] = {&bench_float, &bench_double};
     bool same = true;

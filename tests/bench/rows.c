@@ -177,7 +177,7 @@ static void bytes_group(bench_group *g, const bench_precision *p)
         compare(add_row(g, p, name, i, "bytes/particle"), VALUE, 0, 0, reals[i] * (double)p->real_bytes);
     }
     /* 4: forces reach from block to block, so that all accelerations are kept at once: a vector more, whatever n is */
-    g->scenes[COUNT_OF(integrators)] = (bench_scene){PAIRS, LIBRARY, EULER, 100000};
+    g->scenes[COUNT_OF(integrators)] = (bench_scene){PAIRS, LIBRARY, EULER, 1000000};
     compare(add_row(g, p, "memory, all-pairs gravity", COUNT_OF(integrators), "bytes/particle"), VALUE, 0, 0,
             10 * (double)p->real_bytes);
 }
