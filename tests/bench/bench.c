@@ -149,9 +149,13 @@ static int measure_all(run *r)
     }
     bench_print_header(stdout, measure_pin());
     bench_groups(r->options.quick, take_group, r);
-    print_summary(r);
     if (r->csv)
         fclose(r->csv);
+    if (r->count == 0) {
+        fprintf(stderr, "bench: no row's name has '%s' in it; see bench --list\n", r->options.only);
+        return EXIT_FAILURE;
+    }
+    print_summary(r);
     if (r->options.picture)
         bench_picture(r->rows, r->count, r->options.picture);
     return EXIT_SUCCESS;
