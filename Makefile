@@ -45,6 +45,16 @@ TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
 TESTS           := $(TEST_NAMES:%=$(BUILD)/tests/%-f32) $(TEST_NAMES:%=$(BUILD)/tests/%-f64)
 
+# The benchmark. Its references are compiled for each instruction set, as the library's hot files are.
+BENCH_ISAS          := baseline $(ISAS)
+REFERENCE_SOURCES   := $(wildcard tests/bench/reference/*.c)
+BENCH_TWICE_SOURCES := $(addprefix tests/bench/,bodies.c chosen.c springs.c workload.c)
+BENCH_ONCE_SOURCES  := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
+BENCH_OBJECTS       := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
+                       $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+REFERENCE_OBJECTS   := $(foreach isa,$(BENCH_ISAS),$(foreach precision,f32 f64,\
+                       $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/$(precision)/reference-$(isa)/%.o)))
+
 STATIC := $(BUILD)/libsteadfast.a
 ifeq ($(shell uname -s),Darwin)
 SONAME      := libsteadfast.$(MAJOR).dylib
@@ -59,6 +69,7 @@ SHARED_FLAGS = -shared -Wl,-soname,$(SONAME)
 endif
 SHARED := $(BUILD)/$(SHARED_NAME)
 DEMO   := $(BUILD)/demo
+BENCH  := $(BUILD)/bench
 
 # ---- how ---------------------------------------------------------------------------------------------------------------------
 
@@ -93,7 +104,7 @@ HAVE_SDL     = pkg-config --exists sdl2 SDL2_ttf SDL2_image 2>/dev/null
 # Whatever is asked for together with deps waits for it, also under -j.
 DEPS_FIRST := $(filter deps,$(MAKECMDGOALS))
 
-.PHONY: all library demo run pictures test deps install uninstall clean help need-cmocka need-sdl
+.PHONY: all library demo run pictures test bench deps install uninstall clean help need-cmocka need-sdl
 
 all: library
 	@if $(HAVE_SDL); then $(MAKE) --no-print-directory demo; \
@@ -105,6 +116,7 @@ help:
 	@echo "make run             the demo (without a display: a picture of each scene)"
 	@echo "make pictures        the README's pictures, anew"
 	@echo "make test            all tests"
+	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
 	@echo "make clean           remove build/"
 	@echo "settings             CC=clang  SAN=1  WERROR=1  V=1  OPTIMISE=-O2  PREFIX=..."
@@ -182,7 +194,8 @@ $(DEMO): $(DEMO_OBJECTS) $(STATIC)
 
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
-test: $(TESTS) library
+# The benchmark's references have to be what the library computes; how fast anything is, no test asks.
+test: $(TESTS) $(BENCH) library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
@@ -204,6 +217,34 @@ $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
 	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+
+# ---- benchmark ---------------------------------------------------------------------------------------------------------------
+
+bench: $(BENCH)
+	@mkdir -p $(BUILD)/pictures
+	$(BENCH) --csv $(BUILD)/bench.csv --picture $(BUILD)/pictures/bench
+
+define reference_rules
+$(BUILD)/f32/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -c $$< -o $$@
+
+$(BUILD)/f64/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -DSTF_DOUBLE -c $$< -o $$@
+endef
+$(foreach isa,$(BENCH_ISAS),$(eval $(call reference_rules,$(isa))))
+
+$(BUILD)/f32/tests/bench/%.o: tests/bench/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) $(HAS_ISAS) -c $< -o $@
+
+$(BUILD)/f64/tests/bench/%.o: tests/bench/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) $(HAS_ISAS) -DSTF_DOUBLE -c $< -o $@
+
+$(BENCH): $(BENCH_OBJECTS) $(REFERENCE_OBJECTS) $(STATIC)
+	$(say)$(LINK) $^ -lm -pthread -o $@
 
 # ---- dependencies, installation -----------------------------------------------------------------------------------------------
 

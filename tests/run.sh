@@ -10,6 +10,7 @@ run() {
 
 for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
+for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
