@@ -86,14 +86,37 @@ static void put_lanes(stf_world *world, size_t first, size_t n, const stf_partic
         memcpy(storage->previous + at + d * stride, storage->position + at + d * stride, n * sizeof(stf_real));
 }
 
+/*
+ * Whether check_particle passes all of them. A particle is nothing but reals, so one plain loop finds what is not finite; which
+ * one is bad, and why, is looked for only then.
+ */
+static bool are_sound(const stf_world *world, size_t n, const stf_particle *particles)
+{
+    const stf_real *reals = (const stf_real *)(const void *)particles;
+    const stf_real radius_max = world->keep_radius ? STF_REAL_MAX : 0;
+    int bad = 0;
+
+    for (size_t i = 0; i < n * (sizeof *particles / sizeof *reals); i++)
+        bad |= reals[i] - reals[i] != 0;
+    for (size_t i = 0; i < n; i++) {
+        const stf_real w = particles[i].inverse_mass, radius = particles[i].radius;
+        bad |= (w != 0) & !(w >= STF_REAL_MIN);
+        bad |= !((radius >= 0) & (radius <= radius_max));
+    }
+    for (size_t i = 0; i < n && world->dimensions < STF_DIMENSIONS_MAX; i++)
+        bad |= !stf_vector_fits(particles[i].position, world->dimensions) |
+               !stf_vector_fits(particles[i].velocity, world->dimensions);
+    return !bad;
+}
+
 static stf_result check_lanes(const stf_world *world, size_t n, const stf_particle *particles)
 {
-    for (size_t i = 0; i < n; i++) {
-        const stf_result bad = check_particle(world, &particles[i]);
-        if (bad)
-            return bad;
-    }
-    return STF_OK;
+    stf_result bad = STF_OK;
+
+    if (!are_sound(world, n, particles))
+        for (size_t i = 0; i < n && !bad; i++)
+            bad = check_particle(world, &particles[i]);
+    return bad;
 }
 
 /* What put_lanes wrote is taken back in the block that stays in use. */
