@@ -2,13 +2,13 @@
 
 #include "flight.h"
 
-static void accelerate_rows(const stf_flight *flight, stf_real *restrict a, const stf_real *restrict v,
-                            const stf_real *restrict inverse_mass)
+static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *restrict inverse_mass,
+                       const stf_real *restrict v, stf_real *restrict a)
 {
     const size_t lanes = flight->stride / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
     const stf_real drag = flight->drag;
 
-    for (size_t b = 0; b < flight->blocks; b++, inverse_mass += lanes)
+    for (size_t b = 0; b < blocks; b++, inverse_mass += lanes)
         for (unsigned d = 0; d < flight->dimensions; d++, a += lanes, v += lanes) {
             const stf_real gravity = flight->gravity[d];
 
@@ -18,11 +18,6 @@ static void accelerate_rows(const stf_flight *flight, stf_real *restrict a, cons
                 a[i] = w > 0 ? pushed : 0;
             }
         }
-}
-
-static void accelerate(const stf_flight *flight, const stf_real *velocity, stf_real *a)
-{
-    accelerate_rows(flight, a, velocity, flight->inverse_mass);
 }
 
 #ifndef STF_VARIANT

@@ -25,8 +25,9 @@ typedef struct stf_kernels {
     const stf_integrator *integrators[STF_KERNEL_INTEGRATORS];
     const stf_force *forces[STF_KERNEL_FORCES];
 
-    /* a = gravity - (drag / m) v + F / m, 0 for the immovable, at these velocities. `a` holds F, in blocks, and gets a. */
-    void (*accelerate)(const stf_flight *flight, const stf_real *velocity, stf_real *a);
+    /* a = gravity - (drag / m) v + F / m, 0 for the immovable, of so many blocks. `a` holds F and gets a. */
+    void (*accelerate)(const stf_flight *flight, size_t blocks, const stf_real *inverse_mass, const stf_real *velocity,
+                       stf_real *a);
 } stf_kernels;
 
 extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;

@@ -22,7 +22,8 @@ bool stf_world_is_free(const stf_world *world)
     return !any_pushes(world, STF_FIELD, true) && !any_pushes(world, STF_LINK, true);
 }
 
-stf_real stf_world_drag(const stf_world *world)
+/* The k of all linear drag. */
+static stf_real drag_of(const stf_world *world)
 {
     stf_real sum = 0;
 
@@ -34,18 +35,12 @@ stf_real stf_world_drag(const stf_world *world)
     return sum;
 }
 
-stf_flight stf_world_flight(const stf_world *world, size_t first_block, size_t blocks, stf_real drag)
+void stf_flight_start(stf_flight *flight, const stf_world *world)
 {
-    stf_flight flight = {
-        .blocks = blocks,
-        .stride = world->storage.stride,
-        .dimensions = world->dimensions,
-        .inverse_mass = world->storage.inverse_mass + first_block * world->storage.stride,
-        .drag = drag,
-    };
-
-    memcpy(flight.gravity, world->gravity, sizeof flight.gravity);
-    return flight;
+    flight->stride = world->storage.stride;
+    flight->dimensions = world->dimensions;
+    flight->drag = drag_of(world);
+    memcpy(flight->gravity, world->gravity, sizeof flight->gravity);
 }
 
 /* One call of accelerate, as its parts see it. */
@@ -83,7 +78,7 @@ static void apply_fields(const request *q, unsigned part)
     }
 }
 
-/* Where a link acts the range is all of the world; where none does this calls nothing. */
+/* Where a link acts the range is all of the world. */
 static void apply_links(const request *q, size_t begin_block, size_t end_block)
 {
     const stf_world *world = q->range->world;
@@ -100,10 +95,10 @@ static void forces_to_accelerations(const request *q, unsigned part)
 {
     const stf_world *world = q->range->world;
     const size_t begin = part_begin(q, part), at = begin * stf_world_block_length(world);
-    const stf_flight flight =
-        stf_world_flight(world, q->range->first_block + begin, part_begin(q, part + 1) - begin, q->range->drag);
+    const stf_real *inverse_mass = world->storage.inverse_mass + (q->range->first_block + begin) * world->storage.stride;
 
-    world->kernels->accelerate(&flight, q->velocity + at, q->acceleration + at);
+    world->kernels->accelerate(&q->range->flight, part_begin(q, part + 1) - begin, inverse_mass, q->velocity + at,
+                               q->acceleration + at);
 }
 
 static void fields_part(void *context, unsigned part) { apply_fields(context, part); }
@@ -115,7 +110,8 @@ static void whole_part(void *context, unsigned part)
     const request *q = context;
 
     apply_fields(q, part);
-    apply_links(q, part_begin(q, part), part_begin(q, part + 1));
+    if (q->range->is_tied)
+        apply_links(q, part_begin(q, part), part_begin(q, part + 1));
     forces_to_accelerations(q, part);
 }
 
@@ -127,7 +123,7 @@ static void accelerate(stf_system *system, double time, const stf_real *position
     request q = {.range = range, .time = time, .position = position, .velocity = velocity, .acceleration = acceleration};
 
     q.parts = range->blocks > 1 ? stf_world_parts(world, range->blocks) : 1;
-    if (q.parts == 1 || !any_pushes(world, STF_LINK, false)) {
+    if (q.parts == 1 || !range->is_tied || !any_pushes(world, STF_LINK, false)) {
         stf_world_run(world, q.parts, whole_part, &q);
         return;
     }
@@ -148,16 +144,19 @@ static void place_range(stf_range *range, size_t first_block)
         range->system.history[k] = storage->history[k] + at;
 }
 
-stf_range stf_range_of(const stf_world *world, size_t first_block, size_t blocks, unsigned part, stf_real drag)
+void stf_range_start(stf_range *range, const stf_world *world, size_t first_block, size_t blocks, unsigned part)
 {
     const size_t length = stf_world_block_length(world);
-    stf_range range = {.system = {.length = blocks * length, .accelerate = accelerate},
-                       .world = world, .blocks = blocks, .drag = drag};
 
+    range->system.length = blocks * length;
+    range->system.accelerate = accelerate;
+    range->world = world;
+    range->blocks = blocks;
+    range->is_tied = stf_world_is_tied(world);
+    stf_flight_start(&range->flight, world);
     for (int k = 0; k < world->storage.work_arrays; k++)
-        range.system.work[k] = world->storage.work[k] + part * length;
-    place_range(&range, first_block);
-    return range;
+        range->system.work[k] = world->storage.work[k] + part * length;
+    place_range(range, first_block);
 }
 
 void stf_range_next(stf_range *range) { place_range(range, range->first_block + range->blocks); }
@@ -168,8 +167,9 @@ stf_result stf_world_accelerations(const stf_world *world, double time, const st
     if (!world || !position || !velocity || !acceleration)
         return STF_ERROR_NULL;
 
-    stf_range range = stf_range_of(world, 0, stf_world_blocks(world), 0, stf_world_drag(world));
+    stf_range range;
 
+    stf_range_start(&range, world, 0, stf_world_blocks(world), 0);
     accelerate(&range.system, time, position, velocity, acceleration);
     return STF_OK;
 }

@@ -13,7 +13,7 @@ typedef struct plan {
     const stf_world *world;
     size_t blocks;
     unsigned ticks, parts;
-    stf_real dt, drag;
+    stf_real dt;
 } plan;
 
 static double time_of(const plan *p, unsigned tick, unsigned substep)
@@ -54,8 +54,11 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
 {
     const stf_world *world = p->world;
     const size_t at = first_block * stf_world_block_length(world);
-    stf_flight flight = stf_world_flight(world, first_block, blocks, p->drag);
+    stf_flight flight;
 
+    stf_flight_start(&flight, world);
+    flight.blocks = blocks;
+    flight.inverse_mass = world->storage.inverse_mass + first_block * world->storage.stride;
     flight.position = world->storage.position + at;
     flight.velocity = world->storage.velocity + at;
     for (int k = 0; k < world->storage.history_arrays; k++)
@@ -83,16 +86,18 @@ static void step_blocks_part(void *context, unsigned part)
 {
     const plan *p = context;
     const size_t end = p->blocks * (part + 1) / p->parts;
-    stf_range range = stf_range_of(p->world, p->blocks * part / p->parts, 1, part, p->drag);
+    stf_range range;
 
+    stf_range_start(&range, p->world, p->blocks * part / p->parts, 1, part);
     for (; range.first_block < end; stf_range_next(&range))
         step_range(p, &range);
 }
 
 static void step_tied(const plan *p)
 {
-    stf_range range = stf_range_of(p->world, 0, p->blocks, 0, p->drag);
+    stf_range range;
 
+    stf_range_start(&range, p->world, 0, p->blocks, 0);
     step_range(p, &range);
 }
 
@@ -101,7 +106,7 @@ stf_result stf_world_step(stf_world *world, unsigned ticks)
     if (!world)
         return STF_ERROR_NULL;
 
-    plan p = {.world = world, .blocks = stf_world_blocks(world), .ticks = ticks, .drag = stf_world_drag(world)};
+    plan p = {.world = world, .blocks = stf_world_blocks(world), .ticks = ticks};
 
     p.dt = (stf_real)(world->step / world->substeps);
     p.parts = stf_world_parts(world, p.blocks / PART_BLOCKS_MIN);

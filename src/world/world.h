@@ -13,9 +13,8 @@
 #define stf_world_forget_history stf_world_forget_history_f64
 #define stf_world_is_tied stf_world_is_tied_f64
 #define stf_world_is_free stf_world_is_free_f64
-#define stf_world_drag stf_world_drag_f64
-#define stf_world_flight stf_world_flight_f64
-#define stf_range_of stf_range_of_f64
+#define stf_flight_start stf_flight_start_f64
+#define stf_range_start stf_range_start_f64
 #define stf_range_next stf_range_next_f64
 #define stf_storage_open_block stf_storage_open_block_f64
 #define stf_storage_release stf_storage_release_f64
@@ -126,22 +125,20 @@ bool stf_world_is_tied(const stf_world *world);
 /* Whether nothing acts but gravity and linear drag. */
 bool stf_world_is_free(const stf_world *world);
 
-/* The k of all linear drag. */
-stf_real stf_world_drag(const stf_world *world);
-
-/* These blocks' masses, gravity and drag; position, velocity and history are still to be set. */
-stf_flight stf_world_flight(const stf_world *world, size_t first_block, size_t blocks, stf_real drag);
+/* Sets gravity, drag and the shape of blocks, but no blocks. */
+void stf_flight_start(stf_flight *flight, const stf_world *world);
 
 /* What one step of the integrator advances: one block where nothing ties particles together, else all of them. */
 typedef struct stf_range {
     stf_system system; /* first, so that accelerate finds the range that its system is part of */
     const stf_world *world;
     size_t first_block, blocks;
-    stf_real drag;
+    bool is_tied;
+    stf_flight flight; /* without blocks */
 } stf_range;
 
-/* The range of these blocks, with the scratch of this part of the step, and the range that follows it. */
-stf_range stf_range_of(const stf_world *world, size_t first_block, size_t blocks, unsigned part, stf_real drag);
+/* Makes the range of these blocks, with the scratch of this part of the step; and moves it on to the blocks behind. */
+void stf_range_start(stf_range *range, const stf_world *world, size_t first_block, size_t blocks, unsigned part);
 void stf_range_next(stf_range *range);
 
 /* Into how many parts work is split that has `most` of them. */
