@@ -148,10 +148,18 @@ static void write_panel(FILE *script, const sweep *s, bool in_double, size_t blo
     }
 }
 
+/* Beside the right panel, where no data is. */
+static void write_tolerances(FILE *script, const sweep *s)
+{
+    for (size_t i = 0; i < sizeof table_tolerances / sizeof *table_tolerances; i++)
+        fprintf(script, "set label %lu '%g size' at graph 1.01, first %g left font ',9' textcolor '#777777'\n",
+                (unsigned long)i + 1, table_tolerances[i], table_tolerances[i] * s->scene->size);
+}
+
 static void write_script(FILE *script, const sweep *s)
 {
     const size_t each = s->integrator_count, blocks = s->count / s->levels;
-    const bool both = blocks > each;
+    const bool both = blocks > each, in_days = strcmp(s->scene->time_unit, "days") == 0;
 
     write_setup(script);
     write_ranges(script, s);
@@ -160,18 +168,15 @@ static void write_script(FILE *script, const sweep *s)
             "set multiplot title \"%s: what accuracy costs\" font ',15'\n"
             "set key at screen 0.5,0.035 center bottom horizontal maxrows 2 samplen 3 width 2 textcolor '#333333'\n"
             "set tmargin at screen 0.87\nset bmargin at screen 0.24\n",
-            strcmp(s->scene->time_unit, "s") == 0 ? "second" : s->scene->time_unit, s->scene->title);
-    for (size_t i = 0; i < sizeof table_tolerances / sizeof *table_tolerances; i++)
-        fprintf(script,
-                "set label %lu '%g of the size' at graph 0.008, first %g offset 0,0.45 left font ',9' textcolor '#777777'\n",
-                (unsigned long)i + 1, table_tolerances[i], table_tolerances[i] * s->scene->size);
+            in_days ? "day" : "second", s->scene->title);
     fprintf(script, "set lmargin at screen 0.075\nset rmargin at screen %s\nset ylabel 'largest error, RMS [%s]'\n",
-            both ? "0.515" : "0.97", s->scene->length_unit);
-    write_panel(script, s, s->rows[0].in_double, blocks, 0);
+            both ? "0.495" : "0.925", s->scene->length_unit);
     if (both) {
-        fprintf(script, "set lmargin at screen 0.545\nset rmargin at screen 0.985\nunset ylabel\nset format y ''\n");
-        write_panel(script, s, true, blocks, each);
+        write_panel(script, s, false, blocks, 0);
+        fprintf(script, "set lmargin at screen 0.515\nset rmargin at screen 0.935\nunset ylabel\nset format y ''\n");
     }
+    write_tolerances(script, s);
+    write_panel(script, s, s->rows[s->count - 1].in_double, blocks, both ? each : 0);
     fprintf(script, "unset multiplot\n");
 }
 

@@ -4,68 +4,61 @@
 #include "terminal.h"
 
 #ifdef STF_DOUBLE
-#define rows_measure rows_measure_f64
+#define rows_begin rows_begin_f64
 #else
-#define rows_measure rows_measure_f32
+#define rows_begin rows_begin_f32
 #endif
-
-#define INTEGRATORS_MAX 64
-
-typedef struct job {
-    const scene *scene;
-    const rows_def *def;
-} job;
 
 static stf_result build(void *user, stf_world **world)
 {
-    const job *j = user;
+    const rows_def *def = user;
 
-    return scene_create(j->scene, NULL, world);
+    return scene_create(scene_find(def->scene_name), NULL, world);
 }
 
 static void progress(void *user, size_t done, size_t total)
 {
-    const job *j = user;
+    const rows_def *def = user;
 
-    j->def->progress(j->def->user, done, total);
+    def->progress(def->user, done, total);
 }
 
-stf_result rows_measure(const rows_def *def, stf_trade_row *rows)
+stf_result rows_begin(rows_def *def, stf_trade_row *rows, stf_trade_run **run)
 {
-    const stf_integrator *integrators[INTEGRATORS_MAX];
-    job j = {.scene = scene_find(def->scene_name), .def = def};
+    const stf_integrator *integrators[ROWS_INTEGRATORS_MAX];
+    const stf_trade_def trade = {.build = build,
+                                 .user = def,
+                                 .reference = def->reference,
+                                 .integrators = integrators,
+                                 .integrator_count = def->integrator_count,
+                                 .steps = def->steps,
+                                 .steps_count = def->steps_count,
+                                 .repeats = def->repeats,
+                                 .seconds = monotonic_seconds,
+                                 .progress = progress};
 
     for (size_t i = 0; i < def->integrator_count; i++)
         integrators[i] = stf_integrators[def->integrators[i]];
-    return stf_trade(&(stf_trade_def){.build = build,
-                                      .user = &j,
-                                      .reference = def->reference,
-                                      .integrators = integrators,
-                                      .integrator_count = def->integrator_count,
-                                      .steps = def->steps,
-                                      .steps_count = def->steps_count,
-                                      .repeats = def->repeats,
-                                      .seconds = monotonic_seconds,
-                                      .progress = progress},
-                     rows);
+    return stf_trade_begin(&trade, rows, run);
 }
 
 #ifdef STF_DOUBLE
 
 static bool exact(void *user, size_t particle, double time, double position[3], double velocity[3])
 {
-    const job *j = user;
+    const rows_def *def = user;
+    const scene *s = scene_find(def->scene_name);
 
-    return j->scene->exact && j->scene->exact(particle, time, position, velocity);
+    return s->exact && s->exact(particle, time, position, velocity);
 }
 
 stf_result rows_make_reference(const char *scene_name, stf_trade_reference_def def, stf_trade_reference **reference)
 {
-    job j = {.scene = scene_find(scene_name)};
+    rows_def of = {.scene_name = scene_name};
 
     def.build = build;
     def.exact = exact;
-    def.user = &j;
+    def.user = &of;
     return stf_trade_reference_create(&def, reference);
 }
 

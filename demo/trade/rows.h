@@ -4,6 +4,8 @@
 
 #include "steadfast/trade.h"
 
+#define ROWS_INTEGRATORS_MAX 64
+
 /* What to measure. It holds no reals. */
 typedef struct rows_def {
     const char *scene_name;
@@ -17,9 +19,9 @@ typedef struct rows_def {
     void *user;
 } rows_def;
 
-/* rows[integrator_count x steps_count], in float and in double. */
-stf_result rows_measure_f32(const rows_def *def, stf_trade_row *rows);
-stf_result rows_measure_f64(const rows_def *def, stf_trade_row *rows);
+/* stf_trade_begin in float and in double: rows[integrator_count x steps_count]. def has to outlive the run. */
+stf_result rows_begin_f32(rows_def *def, stf_trade_row *rows, stf_trade_run **run);
+stf_result rows_begin_f64(rows_def *def, stf_trade_row *rows, stf_trade_run **run);
 
 /* The scene's builder and exact solution are put into def. */
 stf_result rows_make_reference(const char *scene_name, stf_trade_reference_def def, stf_trade_reference **reference);

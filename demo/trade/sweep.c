@@ -4,11 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "rows.h"
 #include "terminal.h"
 
 #define LONGEST 8 /* steps of the scene's own: the longest that is tried */
-#define LEAST_SAMPLES 64
+#define LEAST_SAMPLES 256
 #define LEVELS 10
 #define QUICK_LEVELS 8
 
@@ -22,8 +21,7 @@
 #define REFERENCE_MARGIN 1e-4 /* of the tolerance: what a reference of this quality leaves open does not matter */
 
 typedef struct progress {
-    const char *scene;
-    size_t done_before, total; /* parts: float, double */
+    const char *scene, *precision;
 } progress;
 
 static size_t count_integrators(void)
@@ -101,34 +99,42 @@ static void report(void *user, size_t done, size_t total)
 {
     const progress *p = user;
 
-    show_progress(p->scene, "runs", ((double)p->done_before + (double)done / (double)total) / (double)p->total);
+    show_progress(p->scene, p->precision, (double)done / (double)total);
 }
 
+/* Both precisions are timed in turn, so that their costs can be compared. */
 static stf_result measure_rows(sweep *s, const sweep_settings *settings, const stf_trade_reference *reference)
 {
     const size_t each = s->integrator_count * s->levels;
     const bool in_float = settings->precision != PRECISION_DOUBLE, in_double = settings->precision != PRECISION_FLOAT;
-    progress p = {.scene = s->scene->name, .total = (size_t)in_float + in_double};
-    const rows_def def = {.scene_name = s->scene->name,
-                          .reference = reference,
-                          .integrators = s->integrators,
-                          .integrator_count = s->integrator_count,
-                          .steps = s->steps,
-                          .steps_count = s->levels,
-                          .repeats = settings->repeats,
-                          .progress = report,
-                          .user = &p};
+    progress p = {.scene = s->scene->name, .precision = "float"};
+    rows_def def = {.scene_name = s->scene->name,
+                    .reference = reference,
+                    .integrators = s->integrators,
+                    .integrator_count = s->integrator_count,
+                    .steps = s->steps,
+                    .steps_count = s->levels,
+                    .repeats = settings->repeats,
+                    .progress = report,
+                    .user = &p};
+    stf_trade_run *runs[2] = {NULL};
+    size_t begun = 0;
     stf_result result = STF_OK;
 
-    s->rows = calloc(p.total * each, sizeof *s->rows);
+    s->count = ((size_t)in_float + in_double) * each;
+    s->rows = calloc(s->count, sizeof *s->rows);
     if (!s->rows)
         return STF_ERROR_MEMORY;
-    s->count = p.total * each;
     if (in_float)
-        result = rows_measure_f32(&def, s->rows);
-    p.done_before = in_float;
+        result = rows_begin_f32(&def, s->rows, &runs[begun++]);
+    p.precision = "double";
     if (in_double && !result)
-        result = rows_measure_f64(&def, s->rows + in_float * each);
+        result = rows_begin_f64(&def, s->rows + in_float * each, &runs[begun++]);
+    p.precision = "costs";
+    if (!result)
+        result = stf_trade_time(runs, begun);
+    for (size_t i = 0; i < begun; i++)
+        stf_trade_end(runs[i]);
     stf_trade_front(s->rows, s->count);
     return result;
 }

@@ -3,10 +3,9 @@
 #define STEADFAST_TRADE_SWEEP_H
 
 #include "../scenes/scene.h"
-#include "steadfast/trade.h"
+#include "rows.h"
 
 #define SWEEP_LEVELS_MAX 20
-#define SWEEP_INTEGRATORS_MAX 64
 
 /* Both precisions, or one. */
 typedef enum precision { PRECISION_BOTH, PRECISION_FLOAT, PRECISION_DOUBLE } precision;
@@ -27,7 +26,7 @@ typedef struct sweep {
     unsigned samples;
     unsigned steps[SWEEP_LEVELS_MAX]; /* that make the duration */
     size_t levels;
-    size_t integrators[SWEEP_INTEGRATORS_MAX]; /* places in stf_integrators */
+    size_t integrators[ROWS_INTEGRATORS_MAX]; /* places in stf_integrators */
     size_t integrator_count;
     size_t particles;
     stf_trade_accuracy reference;

@@ -210,8 +210,8 @@ void table_print(const sweep *s)
     for (size_t i = 0; i < s->count; i++)
         print_row(s, s->integrators[i / s->levels % s->integrator_count], &s->rows[i]);
     printf("\n*: no other is both cheaper and more accurate. Cost: ns a particle for each unit of simulated time, median and\n"
-           "half the quartiles' distance. Errors: root mean square over particles. Order: of the largest error, from twice the step.\n"
-           "floor, chaos: the reference's own error is not 100 times smaller.\n");
+           "half the quartiles' distance. Errors: root mean square over particles. Order: of the largest error,\n"
+           "from twice the step. floor, chaos: the reference's own error is not 100 times smaller.\n");
     for (int in_double = 0; in_double < 2; in_double++)
         if (sweep_row(s, s->integrators[0], in_double, s->steps[0]))
             print_equal_cost(s, in_double);

@@ -91,6 +91,7 @@ typedef double stf_real;
 /* trade */
 #define stf_trade                   stf_trade_f64
 #define stf_trade_def               stf_trade_def_f64
+#define stf_trade_begin             stf_trade_begin_f64
 
 #endif
 

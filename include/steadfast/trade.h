@@ -53,7 +53,7 @@ typedef struct stf_trade_reference_def {
 
     void *user;
     double duration;           /* s */
-    unsigned samples;          /* equal parts of the duration, at whose ends errors are taken; 0: 64 */
+    unsigned samples;          /* equal parts of the duration, at whose ends errors are taken; 0: 256 */
     double error;              /* m: a run this good will do; 0: until round-off stops it */
     uint64_t accelerations;    /* the most to spend on a run, on its coarser ones as well; 0: 1,000,000 */
     stf_allocator allocator;   /* all zero: malloc and free */
@@ -125,12 +125,26 @@ typedef struct stf_trade_def {
  */
 STF_API stf_result stf_trade(const stf_trade_def *def, stf_trade_row *rows);
 
+/*
+ * The same in parts, to compare costs across precisions or scenes: stf_trade_begin measures all but the costs, stf_trade_time
+ * times the rows of all these runs in turn, and stf_trade_end frees a run. Until then it needs the rows, the reference and the
+ * integrators. Errors: as stf_trade.
+ */
+typedef struct stf_trade_run stf_trade_run;
+STF_API stf_result stf_trade_begin(const stf_trade_def *def, stf_trade_row *rows, stf_trade_run **run);
+STF_API stf_result stf_trade_time(stf_trade_run *const *runs, size_t count);
+STF_API void stf_trade_end(stf_trade_run *run);
+
 /* ---- what to pick ---------------------------------------------------------------------------------------------------- */
 
 /* Whether the reference is good enough to judge this row's largest error: false in chaos, and at the floor of double. */
 STF_API bool stf_trade_error_is_known(const stf_trade_row *row);
 
-/* m: what the largest error is at most, the reference's own included. Infinite for a run that was not finite and bounded. */
+/*
+ * m: what the largest error is at most: 5 % more than at any sample, since between samples it may be larger, and the
+ * reference's own. An error that is not known counts as STF_TRADE_MARGIN times that. Infinite for a run that was not finite and
+ * bounded.
+ */
 STF_API double stf_trade_error_bound(const stf_trade_row *row);
 
 /* Sets on_front: the Pareto front, the rows to which no other is preferable in error and cost. */

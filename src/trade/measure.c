@@ -1,10 +1,9 @@
 /*
- * Errors, energies and accelerations come from one run of each row, in which a force that pushes nothing counts how often it is
- * asked. Costs come from runs without it, timed from outside: rows in turn, a median of repeats.
+ * What needs the scene in its precision. Errors, energies and accelerations come from one run of each row, in which a force
+ * that pushes nothing counts how often it is asked; costs come from runs without it.
  */
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <time.h>
 
 #include "../allocator.h"
@@ -23,12 +22,11 @@
 #define TIMER_CALLS 1000
 #define NANO 1e9
 
-/* What stf_trade works with: the def with its defaults, and what was found out on the way. */
+/* What a run works with: the def with its defaults, and what was found out on the way. */
 typedef struct job {
+    stf_trade_run run; /* first, so that time_row finds the job that its run is part of */
     stf_trade_def def;
     double timer_overhead; /* s that two readings of the timer are apart */
-    double *seconds;       /* a whole run: [rows][repeats], and in [row][0] at first the estimate */
-    size_t rows, done, total;
 } job;
 
 static const stf_integrator *integrator_of(const job *j, size_t row) { return j->def.integrators[row / j->def.steps_count]; }
@@ -60,13 +58,6 @@ static double time_ticks(const job *j, stf_world *world, unsigned ticks)
 
     stf_world_step(world, ticks);
     return now(j) - start - j->timer_overhead;
-}
-
-static void report_progress(job *j)
-{
-    j->done++;
-    if (j->def.progress)
-        j->def.progress(j->def.user, j->done, j->total);
 }
 
 /* ---- a world of one row ---------------------------------------------------------------------------------------------- */
@@ -142,13 +133,13 @@ static void judge(const stf_trade_reference *r, const stf_world *world, unsigned
 }
 
 /* The run that is judged: at every sample, or where it takes fewer steps than there are samples, at each of its own. */
-static stf_result judge_row(job *j, size_t index, stf_trade_row *row)
+static stf_result judge_row(const job *j, size_t index, stf_trade_row *row)
 {
     const stf_trade_reference *r = j->def.reference;
     const unsigned steps = steps_of(j, index), looks = steps < r->samples ? steps : r->samples;
     uint64_t count = 0;
     uint64_t *const record = &count;
-    double *estimate = &j->seconds[index * j->def.repeats];
+    double *estimate = &j->run.seconds[index * j->run.repeats];
     stf_world *world;
 
     *row = (stf_trade_row){.integrator = integrator_of(j, index)->name,
@@ -178,8 +169,9 @@ static stf_result judge_row(job *j, size_t index, stf_trade_row *row)
 /* ---- costs ----------------------------------------------------------------------------------------------------------- */
 
 /* s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. */
-static stf_result time_row(const job *j, size_t index, double estimate, double *seconds)
+static stf_result time_row(const stf_trade_run *of, size_t index, double estimate, double *seconds)
 {
+    const job *j = (const job *)of;
     const unsigned steps = steps_of(j, index);
     const double share = estimate > 0 ? j->def.repeat_seconds / estimate : (double)RUNS_MAX;
     const unsigned ticks = share < 1 ? (unsigned)ceil(steps * share) : steps;
@@ -199,56 +191,7 @@ static stf_result time_row(const job *j, size_t index, double estimate, double *
     return STF_OK;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
-/* Median and quartiles of the repeats, which are sorted on the way, each interpolated between its neighbours. */
-static double quantile(const double *sorted, unsigned count, double part)
-{
-    const double at = part * (count - 1);
-    const unsigned below = (unsigned)at, above = below + 1 < count ? below + 1 : below;
-
-    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
-}
-
-static void summarise(const job *j, size_t index, stf_trade_row *row)
-{
-    const stf_trade_reference *r = j->def.reference;
-    double *repeats = &j->seconds[index * j->def.repeats];
-    const double unit = NANO / (r->duration * (double)(r->particles > 0 ? r->particles : 1));
-
-    qsort(repeats, j->def.repeats, sizeof *repeats, by_size);
-    row->nanoseconds = unit * quantile(repeats, j->def.repeats, 0.5);
-    row->nanoseconds_low = unit * quantile(repeats, j->def.repeats, 0.25);
-    row->nanoseconds_high = unit * quantile(repeats, j->def.repeats, 0.75);
-}
-
-/* ---- both ------------------------------------------------------------------------------------------------------------ */
-
-static stf_result measure(job *j, stf_trade_row *rows)
-{
-    stf_result result = STF_OK;
-
-    for (size_t i = 0; i < j->rows && !result; i++) {
-        result = judge_row(j, i, &rows[i]);
-        report_progress(j);
-    }
-    /* The estimate stands where the first repeat will: that one is taken last. */
-    for (unsigned repeat = j->def.repeats; repeat-- > 0 && !result;)
-        for (size_t i = 0; i < j->rows && !result; i++) {
-            double *of_row = &j->seconds[i * j->def.repeats];
-
-            result = time_row(j, i, of_row[0], &of_row[repeat]);
-            report_progress(j);
-        }
-    for (size_t i = 0; i < j->rows && !result; i++)
-        summarise(j, i, &rows[i]);
-    return result;
-}
+/* ---- all ------------------------------------------------------------------------------------------------------------ */
 
 static stf_result check(const stf_trade_def *def, const stf_trade_row *rows)
 {
@@ -265,31 +208,76 @@ static stf_result check(const stf_trade_def *def, const stf_trade_row *rows)
     return def->repeat_seconds >= 0 ? STF_OK : STF_ERROR_STEP;
 }
 
-stf_result stf_trade(const stf_trade_def *def, stf_trade_row *rows)
+/* Behind the times of the repeats: the lists need not outlive the call. */
+static void copy_lists(job *j)
+{
+    const stf_integrator **integrators = (const stf_integrator **)(j->run.seconds + j->run.count * j->run.repeats);
+    unsigned *steps = (unsigned *)(integrators + j->def.integrator_count);
+
+    for (size_t i = 0; i < j->def.integrator_count; i++)
+        integrators[i] = j->def.integrators[i];
+    for (size_t i = 0; i < j->def.steps_count; i++)
+        steps[i] = j->def.steps[i];
+    j->def.integrators = integrators;
+    j->def.steps = steps;
+}
+
+stf_result stf_trade_begin(const stf_trade_def *def, stf_trade_row *rows, stf_trade_run **run)
 {
     stf_allocator allocator;
-    stf_result result = check(def, rows);
+    stf_result result = run ? check(def, rows) : STF_ERROR_NULL;
 
     if (result)
         return result;
     if (!stf_allocator_complete(def->allocator, &allocator))
         return STF_ERROR_DESCRIPTOR;
 
-    job j = {.def = *def, .rows = def->integrator_count * def->steps_count};
-    j.def.repeats = def->repeats > 0 ? def->repeats : DEFAULT_REPEATS;
-    j.def.repeat_seconds = def->repeat_seconds > 0 ? def->repeat_seconds : DEFAULT_REPEAT_SECONDS;
-    j.def.seconds = def->seconds ? def->seconds : processor_seconds;
-    j.total = j.rows * ((size_t)j.def.repeats + 1);
-    if (j.total > SIZE_MAX / sizeof(double))
+    const size_t count = def->integrator_count * def->steps_count;
+    const unsigned repeats = def->repeats > 0 ? def->repeats : DEFAULT_REPEATS;
+    if (count > (SIZE_MAX / 2 - sizeof(job)) / sizeof(double) / repeats)
         return STF_ERROR_MEMORY;
-    if (j.rows == 0)
-        return STF_OK;
+    const size_t bytes = sizeof(job) + count * repeats * sizeof(double) + def->integrator_count * sizeof *def->integrators +
+                         def->steps_count * sizeof *def->steps;
+    job *j = stf_allocator_allocate(&allocator, bytes);
+    if (!j)
+        return STF_ERROR_MEMORY;
 
-    j.timer_overhead = measure_timer(&j);
-    j.seconds = stf_allocator_allocate(&allocator, j.rows * j.def.repeats * sizeof(double));
-    if (!j.seconds)
-        return STF_ERROR_MEMORY;
-    result = measure(&j, rows);
-    stf_allocator_release(&allocator, j.seconds, j.rows * j.def.repeats * sizeof(double));
+    const stf_trade_reference *r = def->reference;
+    *j = (job){.run = {.allocator = allocator,
+                       .bytes = bytes,
+                       .rows = rows,
+                       .count = count,
+                       .repeats = repeats,
+                       .nanoseconds = NANO / (r->duration * (double)(r->particles > 0 ? r->particles : 1)),
+                       .seconds = (double *)(j + 1),
+                       .progress = def->progress,
+                       .user = def->user,
+                       .total = count * ((size_t)repeats + 1),
+                       .time_row = time_row},
+               .def = *def};
+    copy_lists(j);
+    j->def.repeat_seconds = def->repeat_seconds > 0 ? def->repeat_seconds : DEFAULT_REPEAT_SECONDS;
+    j->def.seconds = def->seconds ? def->seconds : processor_seconds;
+    j->timer_overhead = measure_timer(j);
+    for (size_t i = 0; i < count && !result; i++) {
+        result = judge_row(j, i, &rows[i]);
+        stf_trade_advance(&j->run);
+    }
+    if (result)
+        stf_trade_end(&j->run);
+    else
+        *run = &j->run;
+    return result;
+}
+
+stf_result stf_trade(const stf_trade_def *def, stf_trade_row *rows)
+{
+    stf_trade_run *run;
+    stf_result result = stf_trade_begin(def, rows, &run);
+
+    if (result)
+        return result;
+    result = stf_trade_time(&run, 1);
+    stf_trade_end(run);
     return result;
 }

@@ -9,7 +9,7 @@
 #include "extrapolation.h"
 #include "trade.h"
 
-#define DEFAULT_SAMPLES 64
+#define DEFAULT_SAMPLES 256
 #define DEFAULT_ACCELERATIONS 1000000
 #define EXACT_ULPS 64
 

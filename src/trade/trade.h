@@ -21,6 +21,25 @@ struct stf_trade_reference {
     stf_trade_accuracy accuracy;
 };
 
+/* The part of a run that holds no stf_real. Its precision puts it first in a struct of its own. */
+struct stf_trade_run {
+    stf_allocator allocator;
+    size_t bytes; /* of all of it */
+    stf_trade_row *rows;
+    size_t count;
+    unsigned repeats;
+    double nanoseconds; /* a particle for each simulated second, in a run of 1 s */
+    double *seconds;    /* a whole run: [count][repeats]; in [row][0] at first what judging the row took */
+    void (*progress)(void *user, size_t done, size_t total);
+    void *user;
+    size_t done, total; /* rows judged, and timed once */
+
+    /* s that a whole run of this row takes, which takes about `estimate` */
+    stf_result (*time_row)(const stf_trade_run *run, size_t row, double estimate, double *seconds);
+};
+
+void stf_trade_advance(stf_trade_run *run);
+
 /* sqrt of the mean of squares over the movable, whose sum is given. */
 double stf_trade_rms(const stf_trade_reference *reference, double sum_of_squares);
 
