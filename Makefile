@@ -187,7 +187,7 @@ trade: $(TRADE)
 
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
-test: $(TESTS) library
+test: $(TESTS) library $(TRADE)
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# tests/run.sh BUILD TEST...: runs every test and the check of the installed library, and counts.
+# tests/run.sh BUILD TEST...: runs every test, and the checks of the installed library and of the command trade, and counts.
 build=$1
 shift
 passed=0 failed=0
@@ -10,6 +10,7 @@ run() {
 
 for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
+run sh tests/trade/check.sh "$build"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -48,7 +48,7 @@ static void print(const options *o, const sweep *s, FILE *csv)
         table_print_answers(s, o->sweep.tolerance, o->budget);
     else if (o->markdown)
         table_print_markdown(s);
-    else if (csv != stdout)
+    else if (!o->only_csv)
         table_print(s);
     fflush(stdout);
 }

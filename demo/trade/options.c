@@ -197,12 +197,13 @@ static bool check(options *o)
 {
     const bool asks = o->sweep.tolerance > 0 || o->budget > 0;
 
-    if (asks && (o->csv || o->json || o->pictures || o->markdown || o->sweep.shards > 1))
+    if (asks && (o->csv || o->json || o->pictures || o->markdown || o->sweep.shards > 0))
         return complain("--tolerance and --budget only answer: leave out --csv, --json, --pictures, --markdown and --shard");
-    if (o->sweep.shards > 1 && (o->json || o->pictures || o->markdown))
+    if (o->sweep.shards > 0 && (o->json || o->pictures || o->markdown))
         return complain("a shard gives CSV: leave out --json, --pictures and --markdown");
     if (o->sweep.shards > 0 && !o->csv)
         o->csv = "-";
+    o->only_csv = o->sweep.shards > 0 || (o->csv && strcmp(o->csv, "-") == 0);
     if (o->sweep.shards == 0)
         o->sweep.shard = o->sweep.shards = 1;
     o->sweep.quick = asks;

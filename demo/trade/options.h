@@ -9,6 +9,7 @@ typedef struct options {
     sweep_settings sweep;
     double budget; /* ns a particle for each unit of simulated time; 0: not asked */
     const char *csv, *json, *pictures; /* NULL: not asked for */
+    bool only_csv; /* no tables */
     bool markdown, list, help;
 } options;
 

@@ -13,6 +13,20 @@
 
 const double table_tolerances[3] = {1e-2, 1e-3, 1e-4};
 
+/* Four digits, and no power of ten before the number has ten. */
+static const char *plain_number(double number, char text[CELL])
+{
+    snprintf(text, CELL, fabs(number) >= 1000 && fabs(number) < 1e9 ? "%.0f" : "%.4g", number);
+    return text;
+}
+
+/* ns, or microseconds where they are many */
+static const char *time_text(double nanoseconds, char text[CELL])
+{
+    snprintf(text, CELL, nanoseconds < 1000 ? "%.3g ns" : "%.3g µs", nanoseconds < 1000 ? nanoseconds : nanoseconds / 1000);
+    return text;
+}
+
 static const char *precision_of(const stf_trade_row *row) { return row->in_double ? "double" : "float"; }
 
 const char *table_step(const sweep *s, const stf_trade_row *row, char text[CELL])
@@ -85,8 +99,8 @@ static void print_row(const sweep *s, size_t integrator, const stf_trade_row *ro
         row->steps % 2 == 0 && !round_off ? sweep_row(s, integrator, row->in_double, row->steps / 2) : NULL;
     const double half_spread = (row->nanoseconds_high - row->nanoseconds_low) / 2;
 
-    snprintf(accelerations, CELL, "%.4g", row->accelerations / s->duration);
-    snprintf(cost, CELL, "%.4g", row->nanoseconds);
+    plain_number(row->accelerations / s->duration, accelerations);
+    plain_number(row->nanoseconds, cost);
     snprintf(spread, CELL, "%.1f", 100 * half_spread / row->nanoseconds);
     printf(COLUMNS, row->on_front ? "*" : "", row->integrator, precision_of(row), table_step(s, row, step), accelerations, cost,
            spread, error_text(s, row, row->end_error, end), error_text(s, row, row->largest_error, largest),
@@ -148,7 +162,7 @@ static void print_equal_cost(const sweep *s, bool in_double)
 
 static void print_pick(const sweep *s, const stf_trade_row *pick)
 {
-    char step[CELL], error[CELL];
+    char step[CELL], error[CELL], cost[CELL];
 
     if (!pick) {
         printf("none of these\n");
@@ -157,8 +171,8 @@ static void print_pick(const sweep *s, const stf_trade_row *pick)
     const bool known = stf_trade_error_is_known(pick);
 
     snprintf(error, CELL, known ? "%.2g" : "below %.1g", known ? pick->largest_error : stf_trade_error_bound(pick));
-    printf("%s in %s at %s: %.4g ns/%s, largest error %s %s\n", pick->integrator, precision_of(pick), table_step(s, pick, step),
-           pick->nanoseconds, s->scene->time_unit, error, s->scene->length_unit);
+    printf("%s in %s at %s: %s ns/%s, largest error %s %s\n", pick->integrator, precision_of(pick), table_step(s, pick, step),
+           plain_number(pick->nanoseconds, cost), s->scene->time_unit, error, s->scene->length_unit);
 }
 
 static void print_for_tolerance(const sweep *s, double tolerance)
@@ -173,9 +187,9 @@ static void print_for_tolerance(const sweep *s, double tolerance)
 
 static void print_for_budget(const sweep *s, double budget, const char *whose)
 {
-    char label[CELL];
+    char label[CELL], cost[CELL];
 
-    snprintf(label, CELL, "%.4g ns/%s%s", budget, s->scene->time_unit, whose);
+    snprintf(label, CELL, "%.31s ns/%s%s", plain_number(budget, cost), s->scene->time_unit, whose);
     printf("most accurate for %-33s ", label);
     print_pick(s, stf_trade_most_accurate(s->rows, s->count, budget));
 }
@@ -232,12 +246,12 @@ void table_print_markdown(const sweep *s)
 {
     printf("| %s |", s->scene->title);
     for (size_t i = 0; i < sizeof table_tolerances / sizeof *table_tolerances; i++) {
-        char step[CELL];
+        char step[CELL], cost[CELL];
         const stf_trade_row *pick = stf_trade_cheapest(s->rows, s->count, table_tolerances[i] * s->scene->size);
 
         if (pick)
-            printf(" `%s`%s, %s: %.3g ns |", pick->integrator, pick->in_double ? " in double" : "", table_step(s, pick, step),
-                   pick->nanoseconds);
+            printf(" `%s`%s, %s: %s |", pick->integrator, pick->in_double ? " in double" : "", table_step(s, pick, step),
+                   time_text(pick->nanoseconds, cost));
         else
             printf(" none |");
     }
