@@ -7,7 +7,7 @@
 
 #ifndef TRADE_SCENE_BUILDER_ONLY
 
-const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1}, trade_scene_sizes[TRADE_SCENES] = {1, 1, 4, 1, 1};
+const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1};
 
 bool trade_scene_exact_fall(void *user, size_t particle, double time, double position[3], double velocity[3])
 {
@@ -35,11 +35,22 @@ static stf_result add(stf_world *world, double x, double y, double vx, double vy
     return stf_world_add(world, &p, NULL);
 }
 
+static void sway(const void *records, size_t count, const stf_particles *particles, double time)
+{
+    (void)records, (void)count;
+    for (size_t i = 0; i < particles->count; i++)
+        particles->force[i] += (stf_real)cos(3 * time);
+}
+
+static const stf_force sway_force = {.name = "sway", .apply = sway, .depends_on = STF_ON_TIME};
+
 static stf_result add_pendulum(stf_world *world)
 {
     const stf_anchored_spring rod = {.particle = 0, .stiffness = 400, .rest_length = 1};
-    const stf_result result = add(world, 1, 0, 0, 0, 1);
+    stf_result result = add(world, 1, 0, 0, 0, 1);
 
+    if (!result)
+        result = stf_world_add_force(world, &sway_force, NULL, 0, NULL);
     return result ? result : stf_world_add_force(world, &stf_force_anchored_springs, &rod, 1, NULL);
 }
 
@@ -63,6 +74,19 @@ static stf_result add_binary(stf_world *world)
     return result ? result : add_gravity(world, 0);
 }
 
+static void push_nothing(const void *records, size_t count, const stf_particles *particles, double time)
+{
+    (void)records, (void)count, (void)particles, (void)time;
+}
+
+static double potential_of_time(const void *records, size_t count, const stf_particles *particles, double time)
+{
+    (void)records, (void)count;
+    return particles->first == 0 ? time : 0;
+}
+
+static const stf_force timer_force = {.name = "timer", .apply = push_nothing, .potential = potential_of_time};
+
 static stf_result add_fall(stf_world *world)
 {
     const stf_quadratic_drag drag = {.coefficient = (stf_real)(GRAVITY / (TERMINAL_SPEED * TERMINAL_SPEED))};
@@ -70,6 +94,8 @@ static stf_result add_fall(stf_world *world)
 
     if (!result)
         result = add(world, 1, 0, 0, 0, 0);
+    if (!result)
+        result = stf_world_add_force(world, &timer_force, NULL, 0, NULL);
     return result ? result : stf_world_add_force(world, &stf_force_quadratic_drag, &drag, 1, NULL);
 }
 
@@ -85,9 +111,20 @@ static stf_result add_chaos(stf_world *world)
     return result ? result : add_gravity(world, 0);
 }
 
+static stf_result add_crowd(stf_world *world)
+{
+    const stf_linear_drag drag = {.coefficient = 1};
+    stf_result result = stf_world_add_force(world, &stf_force_linear_drag, &drag, 1, NULL);
+
+    for (int i = 0; i < 600 && !result; i++)
+        result = add(world, i, 0, 0, 1, 1);
+    return result;
+}
+
 stf_result trade_scene_build(void *user, stf_world **world)
 {
-    static stf_result (*const populate[TRADE_SCENES])(stf_world *) = {add_pendulum, add_binary, add_fall, add_chaos, NULL};
+    static stf_result (*const populate[TRADE_SCENES])(stf_world *) = {
+        add_pendulum, add_binary, add_fall, add_chaos, NULL, add_crowd};
     const trade_scene which = *(const trade_scene *)user;
     const bool falls = which == TRADE_PENDULUM || which == TRADE_FALL;
     const stf_world_def def = {.dimensions = 2, .gravity = {0, falls ? (stf_real)-GRAVITY : 0, 0}};

@@ -10,16 +10,17 @@
 
 /* What there is, and what `user` points at. */
 typedef enum trade_scene {
-    TRADE_PENDULUM,     /* a mass on a stiff undamped anchored spring in gravity: swings and stretches */
+    TRADE_PENDULUM,     /* a mass on a stiff anchored spring in gravity, pushed by cos(3 t) N along x: swings and stretches */
     TRADE_BINARY,       /* two masses in an orbit of eccentricity 0.3, 2 pi s long, and a light third one far away */
-    TRADE_FALL,         /* quadratic drag and gravity: a known path along one axis, and an immovable particle */
+    TRADE_FALL,         /* quadratic drag and gravity: a known path along y, an immovable particle, and a potential of t J */
     TRADE_CHAOS,        /* three equal masses that meet closely */
     TRADE_REST,         /* nothing moves */
+    TRADE_CROWD,        /* 600 particles, which fill several blocks, in drag */
     TRADE_SCENES
 } trade_scene;
 
-/* duration of each, s; a length to compare errors with, m */
-extern const double trade_scene_durations[TRADE_SCENES], trade_scene_sizes[TRADE_SCENES];
+/* s */
+extern const double trade_scene_durations[TRADE_SCENES];
 
 #ifndef STF_DOUBLE
 stf_result trade_scene_build(void *user, stf_world **world);
