@@ -15,7 +15,7 @@
    out, so that every shard on every machine decides alike. */
 #define OVERHEAD 8
 #define WORK_MAX 2.5e9
-#define QUICK_WORK_MAX 2.5e8
+#define QUICK_WORK_MAX 3e8
 #define REFERENCE_WORK_MAX 1e9
 #define QUICK_REFERENCE_WORK_MAX 2.5e8
 #define REFERENCE_MARGIN 1e-4 /* of the tolerance: what a reference of this quality leaves open does not matter */
