@@ -23,6 +23,7 @@ BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
 
 # What holds no reals exists once; all else is compiled for float and for double.
 ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c src/sort.c
+ONCE_SOURCES  += $(addprefix src/trade/,extrapolation.c pick.c reference.c timing.c)
 TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
 
@@ -34,12 +35,16 @@ has           = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo yes
 ISAS         := $(if $(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),$(foreach isa,avx2 avx512,$(if $(call has,$(FLAGS_$(isa))),$(isa))))
 HAS_ISAS     := $(if $(filter avx2,$(ISAS)),-DSTF_HAS_AVX2) $(if $(filter avx512,$(ISAS)),-DSTF_HAS_AVX512)
 DEMO_SOURCES  := $(wildcard demo/*.c)
+TRADE_SOURCES := $(wildcard demo/trade/*.c)
 HEADERS       := $(wildcard include/steadfast/*.h)
 
 LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
                    $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o) \
                    $(foreach isa,$(ISAS),$(HOT_SOURCES:%.c=$(BUILD)/f32-$(isa)/%.o) $(HOT_SOURCES:%.c=$(BUILD)/f64-$(isa)/%.o))
 DEMO_OBJECTS    := $(DEMO_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o)
+
+TRADE_OBJECTS   := $(TRADE_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o) \
+                   $(SCENE_SOURCES:%.c=$(BUILD)/f64/%.o) $(BUILD)/f64/demo/trade/rows.o
 
 TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
@@ -70,6 +75,7 @@ endif
 SHARED := $(BUILD)/$(SHARED_NAME)
 DEMO   := $(BUILD)/demo
 BENCH  := $(BUILD)/bench
+TRADE  := $(BUILD)/trade
 
 # ---- how ---------------------------------------------------------------------------------------------------------------------
 
@@ -104,7 +110,7 @@ HAVE_SDL     = pkg-config --exists sdl2 SDL2_ttf SDL2_image 2>/dev/null
 # Whatever is asked for together with deps waits for it, also under -j.
 DEPS_FIRST := $(filter deps,$(MAKECMDGOALS))
 
-.PHONY: all library demo run pictures test bench deps install uninstall clean help need-cmocka need-sdl
+.PHONY: all library demo run trade pictures test bench deps install uninstall clean help need-cmocka need-sdl
 
 all: library
 	@if $(HAVE_SDL); then $(MAKE) --no-print-directory demo; \
@@ -114,7 +120,8 @@ help:
 	@echo "make                 libsteadfast.a, the shared library, and the demo if SDL2 is there, into $(BUILD)"
 	@echo "make deps            install what demo and tests need and is not there"
 	@echo "make run             the demo (without a display: a picture of each scene)"
-	@echo "make pictures        the README's pictures, anew"
+	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
+	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
@@ -169,10 +176,14 @@ run: $(DEMO)
 	$(DEMO) --out $(BUILD)/pictures
 
 # The pictures of the README.
-pictures: $(DEMO)
+pictures: $(DEMO) $(TRADE)
 	@mkdir -p demo/pictures
 	$(DEMO) --headless --scene cloth --ticks 720 --png demo/pictures/cloth.png
 	$(DEMO) --headless --scene drag --integrator explicit_euler --ghost rk4 --png demo/pictures/drag.png
+	@mkdir -p $(BUILD)/sweep
+	$(TRADE) --markdown --precision float
+	$(TRADE) --scene kepler --csv $(BUILD)/sweep/kepler.csv --pictures $(BUILD)/sweep >$(BUILD)/sweep/kepler.txt
+	cp $(BUILD)/sweep/trade_kepler.png demo/pictures/trade.png
 
 need-sdl: | $(DEPS_FIRST)
 	@$(HAVE_SDL) || { echo "steadfast: the demo needs SDL2, SDL2_ttf and SDL2_image: type: make deps" >&2; exit 1; }
@@ -192,10 +203,27 @@ $(BUILD)/f32/demo/%.o: demo/%.c Makefile | need-sdl
 $(DEMO): $(DEMO_OBJECTS) $(STATIC)
 	$(say)$(LINK) $^ $(SDL_LIBS) -lm -o $@
 
+# ---- trade: what each integrator and step costs and how wrong it is ----------------------------------------------------------
+
+$(BUILD)/f32/demo/trade/%.o: demo/trade/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -Idemo -c $< -o $@
+
+$(BUILD)/f64/demo/trade/%.o: demo/trade/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
+
+$(TRADE): $(TRADE_OBJECTS) $(STATIC)
+	$(say)$(LINK) $^ -lm -o $@
+
+trade: $(TRADE)
+	@mkdir -p $(BUILD)/sweep
+	$(TRADE) --csv $(BUILD)/sweep/trade.csv --json $(BUILD)/sweep/trade.json --pictures $(BUILD)/sweep
+
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) library
+test: $(TESTS) $(BENCH) $(TRADE) library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# tests/run.sh BUILD TEST...: runs every test and the check of the installed library, and counts.
+# tests/run.sh BUILD TEST...: runs every test, and the checks of the installed library and of the command trade, and counts.
 build=$1
 shift
 passed=0 failed=0
@@ -11,6 +11,7 @@ run() {
 for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
 for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
+run sh tests/trade/check.sh "$build"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

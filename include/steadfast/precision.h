@@ -5,7 +5,7 @@
  * with _f64 behind it. `#define STF_DOUBLE` before the first Steadfast include (best: -DSTF_DOUBLE for the whole file)
  * gives stf_real and all names below their double meaning, so that code is written once. A program may have files of
  * both kinds. What was compiled for one can't link with the other, and C++ sees two types. What holds no reals (results, the
- * version, the allocator, the clock) exists once and goes with both.
+ * version, the allocator, the clock, references and rows of trade) exists once and goes with both.
  */
 #ifndef STEADFAST_PRECISION_H
 #define STEADFAST_PRECISION_H
@@ -90,6 +90,10 @@ typedef double stf_real;
 #define stf_world_accelerations     stf_world_accelerations_f64
 #define stf_world_find_non_finite   stf_world_find_non_finite_f64
 #define stf_world_describe          stf_world_describe_f64
+/* trade */
+#define stf_trade                   stf_trade_f64
+#define stf_trade_def               stf_trade_def_f64
+#define stf_trade_begin             stf_trade_begin_f64
 
 #endif
 
