@@ -14,7 +14,8 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
 
             for (size_t i = 0; i < lanes; i++) {
                 const stf_real w = inverse_mass[i];
-                const stf_real pushed = stf_free_acceleration(stf_free_of(gravity, drag, w), v[i]) + a[i] * w;
+                const stf_free free = {.gravity = gravity, .rate = drag * w}; /* one condition a lane: gcc wants no two */
+                const stf_real pushed = stf_free_acceleration(free, v[i]) + a[i] * w;
                 a[i] = w > 0 ? pushed : 0;
             }
         }
