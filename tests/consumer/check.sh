@@ -73,7 +73,7 @@ flag_of() { [ "$1" = float ] || echo -DSTF_DOUBLE; }
 is_once() {
     case $1 in
     stf_clock_* | stf_result_text | stf_version) ;; # functions; and stf_clock_def
-    stf_real | stf_result | stf_allocator | stf_clock | stf_force_kind | stf_force_id | stf_energy) ;;
+    stf_real | stf_result | stf_allocator | stf_clock | stf_force_kind | stf_force_id | stf_energy | stf_stability | stf_stability_def) ;;
     *) false ;;
     esac
 }
