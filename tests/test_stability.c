@@ -3,6 +3,7 @@
  * rests or swings around rest, is larger in the last quarter than in the second.
  */
 #include <math.h>
+#include <string.h>
 
 #include "scenes/scene.h"
 #include "support/check.h"
@@ -136,7 +137,7 @@ static const subject subjects[] = {
     {"oscillator, zeta 0.1", damped_01, OMEGA, 2 * 0.1 * OMEGA, 20000},
     {"oscillator, zeta 0.5", damped_05, OMEGA, 2 * 0.5 * OMEGA, 20000},
     {"oscillator, zeta 1", damped_1, OMEGA, 2 * OMEGA, 20000},
-    {"linear drag", drag, 0, 3, 20000},
+    {"linear drag", drag, 0, 3, 10000},
     {"chain", chain, 2 * 10 * 0.99573417629503452 /* sin(16 pi / 34) */, 0, 8000},
     {"masses 1 : 1e6", pair, 1000.0004999998750, 0, 4000},
     {"masses 1 : 1e6, damped", damped_pair, 1000.0004999998750, 400.0004, 4000},
@@ -146,12 +147,18 @@ static const subject subjects[] = {
 
 /* ---- runs ------------------------------------------------------------------------------------------------------------------ */
 
+/* Sum of m v^2 / 2, in J, without the potentials that stf_world_energy works out as well. */
 static double kinetic_of(const stf_world *world)
 {
-    stf_energy energy;
+    const stf_particles at = stf_world_view(world);
+    double sum = 0;
 
-    assert_ok(stf_world_energy(world, &energy));
-    return energy.kinetic;
+    for (size_t i = 0; i < at.count; i++)
+        for (unsigned d = 0; d < at.dimensions && at.inverse_mass[i] > 0; d++) {
+            const double v = (double)at.velocity[stf_particles_offset(&at, i) + d * at.stride];
+            sum += v * v / (2 * (double)at.inverse_mass[i]);
+        }
+    return sum;
 }
 
 static double largest_in(stf_world *world, unsigned ticks)
@@ -246,7 +253,7 @@ static void modes_are_those_of_theory(void **state)
     }
 }
 
-/* Steps from a tenth of the limit to ten limits: with the advised substeps, and no more than are needed, runs hold. */
+/* Steps from a tenth of the limit (not of the cloth, for time) to ten limits: with the advised substeps, and no more, runs hold. */
 static void advised_substeps_keep_the_scene_steady(void **state)
 {
     (void)state;
@@ -260,7 +267,7 @@ static void advised_substeps_keep_the_scene_steady(void **state)
                 assert_true(isinf(there.load));
                 continue;
             }
-            for (double times = 0.1; times < 11; times *= 10) {
+            for (double times = subjects[s].omega > 0 ? 0.1 : 10; times < 11; times *= 10) {
                 world = subjects[s].build(stf_integrators[i], times * there.limit);
                 const unsigned advised = stability_of(world).substeps;
                 assert_int_equal(advised, ceil(times / STF_STABILITY_SAFETY - 1e-3));
@@ -381,6 +388,45 @@ static void what_flies_apart_by_itself_has_growth_and_no_limit(void **state)
     assert_true(isinf(found.limit));
     assert_int_equal(found.substeps, 1);
     stf_world_destroy(world);
+}
+
+/*
+ * A pressed chain in a plane buckles: that grows by itself, and along the chain the limit stays what it was; but for methods
+ * that want damping, since the shapes that are found mix both directions.
+ */
+static void what_buckles_leaves_the_limit_of_the_rest(void **state)
+{
+    (void)state;
+    for (int i = 0; stf_integrators[i]; i++) {
+        if (!(stf_integrators[i]->imaginary_stability > 0))
+            continue;
+        stf_world *world = world_of(2, stf_integrators[i], 1e-3), *line = chain(stf_integrators[i], 1e-3);
+        stf_spring springs[CHAIN + 1];
+        size_t count;
+
+        for (uint32_t k = 0; k < CHAIN + 2; k++) {
+            const stf_real inverse_mass = particle_of(line, k).inverse_mass;
+            assert_ok(stf_world_add(world, &(stf_particle){{(stf_real)k, 0, 0}, {0, 0, 0}, inverse_mass, 0}, NULL));
+        }
+        memcpy(springs, stf_world_force_records(line, 1, &count), sizeof springs);
+        for (uint32_t k = 0; k <= CHAIN; k++) {
+            springs[k].damping = (stf_real)0.1;
+            springs[k].rest_length = 1;
+        }
+        assert_ok(stf_world_set_force(line, 1, springs, count));
+        const stf_stability straight = stability_of(line);
+        for (uint32_t k = 0; k <= CHAIN; k++)
+            springs[k].rest_length = (stf_real)1.05;
+        assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+        const stf_stability pressed = stability_of(world);
+
+        assert_true(straight.growth == 0);
+        /* Across, k (1 - l0 / l) is negative: sqrt(0.05) of the frequency along. */
+        assert_close(pressed.growth, sqrt(0.05) * subjects[6].omega, 0.01 * pressed.growth);
+        assert_close(pressed.limit, straight.limit, 0.01 * straight.limit);
+        stf_world_destroy(world);
+        stf_world_destroy(line);
+    }
 }
 
 /* ---- integrators and forces of one's own ----------------------------------------------------------------------------------- */
@@ -581,6 +627,7 @@ int main(void)
         cmocka_unit_test(what_no_force_holds_has_no_limit),
         cmocka_unit_test(an_orbit_at_its_pericentre_is_limited_across_the_pull),
         cmocka_unit_test(what_flies_apart_by_itself_has_growth_and_no_limit),
+        cmocka_unit_test(what_buckles_leaves_the_limit_of_the_rest),
         cmocka_unit_test(integrators_of_ones_own_have_limits),
         cmocka_unit_test(a_magnetic_force_turns_without_damping),
         cmocka_unit_test(modes_that_are_damped_unalike_mix),

@@ -2,24 +2,25 @@
  * stability: the largest step that a world's integrator survives in the scene as it stands.
  *
  * A step is stable as long as the integrator makes no small disturbance grow that would not grow by itself. How fast a scene
- * swings and how strongly it is damped says its Jacobian, A = da/dx and B = da/dv. No force has to supply them: products
- * with vectors come from differences of stf_world_accelerations, and so the user's own forces count like the library's. The
- * fastest modes come from Arnoldi's iteration, x'' = A x + B x' projected on each mode is x'' = -omega^2 x - k x', and the
- * integrator's own step on that, at every h, says where it starts to grow: no table of limits, and so the user's own
- * integrators count as well.
+ * swings and how strongly it is damped says its Jacobian, A = da/dx and B = da/dv. No force has to supply it: products
+ * with vectors come from differences of stf_world_accelerations, and so the user's own forces count like the library's. A Krylov
+ * space reduces the scene to its extreme shapes, each mode there is x'' = -omega^2 x - k x', and the integrator's own step on
+ * that says at which length it starts to grow: no table of limits, and so the user's own integrators count as well.
  *
  *     stf_stability found;
  *     stf_stability_measure(world, NULL, &found);
  *     if (found.substeps > stf_world_substeps(world))
  *         stf_world_set_substeps(world, found.substeps);
  *
- * Sources: W. E. Arnoldi, Quart. Appl. Math. 9, 17 (1951); D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357 (2004),
- * sec. 2.3 (differences); F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001) (modes of x'' = A x + B x').
+ * Sources: D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357 (2004), sec. 2.3 (differences); Z. Bai, Y. Su, SIAM J. Matrix
+ * Anal. Appl. 26, 640 (2005) (reduction); F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001) (modes of x'' = A x + B x').
  *
  * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit that
- * comes closer) wants another look. Modes much slower than the fastest (a thirtieth in float, some 1/1000 in double) are
- * not told from free motion; they matter only to methods that make undamped motion grow at every step (Euler's, the
- * midpoint method, Heun's), and there their growth is slow.
+ * comes closer) wants another look. Modes that are much slower than the fastest (some 1/20 in float, 1/1000 in double) are not
+ * told from free motion. Methods that make every undamped spring grow (explicit Euler, midpoint, improved Euler) are limited
+ * by the least damped mode, not by a fast one: in large scenes of unlike dampers, or that buckle, it may be missed, and their
+ * limit be off by half. All others are within 2 % in scenes whose dampers are in proportion to their springs, and within 5 %
+ * in nets of the worst kind that were tried.
  */
 #ifndef STEADFAST_STABILITY_H
 #define STEADFAST_STABILITY_H
@@ -62,9 +63,9 @@ typedef struct stf_stability {
 
 /*
  * Measures the world where it stands, at its present integrator, and changes nothing. Errors: NULL, MEMORY, DESCRIPTOR (half an
- * allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world, and some
- * 2 n r^2 operations on its 2 n numbers, r being two thirds of the accelerations; memory, for the call: some 16 r bytes for each
- * component of a particle (2 kB for a particle in 3D), half of that where nothing depends on velocity.
+ * allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world, s of them, and
+ * some 2 s^2 operations for each component of a particle: 8 ms for the demo's cloth. Memory, for the time of the call: 8 s bytes
+ * for each component of a particle (1.5 kB for one in 3D), and 100 kB.
  */
 STF_API stf_result stf_stability_measure(const stf_world *world, const stf_stability_def *def, stf_stability *stability);
 

@@ -185,7 +185,7 @@ static void accelerate_all(stf_system *system, double time, const stf_real *posi
     }
 }
 
-bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt, double growth)
+bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt)
 {
     unsigned char memory[ARRAYS * STF_RUN_LENGTH_MAX * sizeof(stf_real) + ALIGNMENT] = {0};
     stf_real *next = (stf_real *)(void *)(memory + ALIGNMENT - (uintptr_t)memory % ALIGNMENT);
@@ -217,5 +217,5 @@ bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const dou
             return !(size < 1);
         largest[4 * step / RUN_STEPS] = fmax(largest[4 * step / RUN_STEPS], size);
     }
-    return log(largest[3] / largest[1]) > RUN_STEPS / 2 * (RUN_RATE + growth * dt);
+    return log(largest[3] / largest[1]) > RUN_STEPS / 2 * RUN_RATE;
 }

@@ -24,10 +24,7 @@ double stf_first_growth(const stf_integrator *integrator, double complex alpha, 
 /* The most unknowns of a run. */
 #define STF_RUN_LENGTH_MAX 64
 
-/*
- * Whether a run on x'' = A x + B x', n x n, grows by more than e^(growth dt) a step, and clearly: by some 0.3 % a step.
- */
-bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt,
-                           double growth);
+/* Whether a run on x'' = A x + B x', n x n, grows, and clearly: by some 0.3 % a step. */
+bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt);
 
 #endif

@@ -44,7 +44,8 @@ typedef struct search {
     double *scratch[SCRATCH]; /* [jacobian.length] */
     double *h;                /* [most + 1][most] */
     double complex *matrix, *values, *shape; /* [2 most][2 most], [2 most], [most] */
-    double growth;
+    double *calm;             /* [count][count], in place of h: A without what grows by itself */
+    double growth;            /* of that */
 } search;
 
 /* ---- memory -------------------------------------------------------------------------------------------------------------- */
@@ -225,6 +226,18 @@ static void look_at(search *s, mode *m, const mode *before, double lowest)
         m->limit = stf_first_growth(s->integrator, alpha, beta, lowest * size) / size;
 }
 
+/* A -= alpha y y^T: of a mode that grows by itself nothing is left that drives it. */
+static void calm_down(search *s, double complex lambda)
+{
+    const size_t n = s->reduction.count;
+
+    find_shape(s, lambda);
+    const double alpha = creal(quotient(s, s->reduction.a));
+    for (size_t i = 0; i < n && alpha > 0; i++)
+        for (size_t k = 0; k < n; k++)
+            s->calm[i * n + k] -= alpha * creal(s->shape[i] * conj(s->shape[k]));
+}
+
 /* The mode of the lowest limit; of several at 0 the fastest. Its limit is INFINITY where none has one. */
 static mode find_limiting(search *s)
 {
@@ -233,11 +246,15 @@ static mode find_limiting(search *s)
     mode limiting = {.limit = (double)INFINITY}, before = limiting;
     double fastest = 0;
 
+    s->calm = s->h;
+    memcpy(s->calm, s->reduction.a, s->reduction.count * s->reduction.count * sizeof *s->calm);
     for (size_t i = 0; i < count; i++)
         fastest = fmax(fastest, cabs(s->values[i]));
     for (size_t i = 0; i < count; i++) {
         mode now = {.lambda = s->values[i]};
         const double size = cabs(now.lambda);
+        if (s->reduction.damped && creal(now.lambda) > 0)
+            calm_down(s, now.lambda);
         if (!(size > 0) || size < floor_part * fastest || cimag(now.lambda) < -ALIKE * size)
             continue;
         look_at(s, &now, &before, limiting.limit);
@@ -248,18 +265,18 @@ static mode find_limiting(search *s)
     return limiting;
 }
 
-/* Lowers the limit to where the reduced scene stops to grow as a whole. */
+/* Lowers the limit to where the reduced scene as a whole, but for what grows by itself, stops to grow. */
 static void lower(const search *s, mode *m)
 {
     const stf_reduction *r = &s->reduction;
     double below = 0, above = JUST_BELOW * m->limit;
 
     if (!r->damped || !(m->limit > 0) || !(m->limit < (double)INFINITY) ||
-        !stf_reduced_run_grows(s->integrator, r->count, r->a, r->b, above, s->growth))
+        !stf_reduced_run_grows(s->integrator, r->count, s->calm, r->b, above))
         return;
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = (below + above) / 2;
-        *(stf_reduced_run_grows(s->integrator, r->count, r->a, r->b, middle, s->growth) ? &above : &below) = middle;
+        *(stf_reduced_run_grows(s->integrator, r->count, s->calm, r->b, middle) ? &above : &below) = middle;
     }
     m->limit = below;
 }
