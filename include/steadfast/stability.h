@@ -65,7 +65,7 @@ typedef struct stf_stability {
  * Measures the world where it stands, at its present integrator, and changes nothing. Errors: NULL, MEMORY, DESCRIPTOR (half an
  * allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world, s of them, and
  * some 2 s^2 operations for each component of a particle: 8 ms for the demo's cloth. Memory, for the time of the call: 8 s bytes
- * for each component of a particle (1.5 kB for one in 3D), and 100 kB.
+ * for each component of a particle (1.5 kB for one in 3D), and 150 kB.
  */
 STF_API stf_result stf_stability_measure(const stf_world *world, const stf_stability_def *def, stf_stability *stability);
 

@@ -1,4 +1,4 @@
-/* The integrator's side of stability: what its steps do to one mode, and to many together. */
+/* The integrator's side of stability: what its steps do to x'' = A x + B x', with small matrices, n x n. */
 #ifndef STEADFAST_SRC_AMPLIFICATION_H
 #define STEADFAST_SRC_AMPLIFICATION_H
 
@@ -7,24 +7,18 @@
 #include "steadfast/integrator.h"
 
 #ifdef STF_DOUBLE
-#define stf_amplification stf_amplification_f64
 #define stf_first_growth stf_first_growth_f64
-#define stf_reduced_run_grows stf_reduced_run_grows_f64
+#define stf_run_grows stf_run_grows_f64
 #endif
 
 /*
- * The spectral radius of one step of dt on x'' = alpha x + beta x', over the extended state (x, v, history). Time is in units
- * that make alpha and beta about 1.
+ * The smallest step at which the mode x'' = alpha x + beta x' grows: 0 where it does at every step, INFINITY where it does at none
+ * up to `most`. Time is in units that make alpha and beta about 1.
  */
-double stf_amplification(const stf_integrator *integrator, double complex alpha, double complex beta, double dt);
-
-/* The smallest dt at which a step makes the mode grow: 0 where every step does, INFINITY where none up to `most` does. */
 double stf_first_growth(const stf_integrator *integrator, double complex alpha, double complex beta, double most);
 
-/* The most unknowns of a run. */
-#define STF_RUN_LENGTH_MAX 64
-
-/* Whether a run on x'' = A x + B x', n x n, grows, and clearly: by some 0.3 % a step. */
-bool stf_reduced_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt);
+/* Whether a run grows, and clearly: by some 0.3 % a step. n is at most STF_RUN_MAX. */
+#define STF_RUN_MAX 64
+bool stf_run_grows(const stf_integrator *integrator, size_t n, const double *a, const double *b, double dt);
 
 #endif

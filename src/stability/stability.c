@@ -1,8 +1,8 @@
 /*
- * From the reduced scene its modes, x'' = A x + B x' = lambda^2 x, and for each, as x'' = alpha x + beta x' with the quotients
- * alpha = y* A y, beta = y* B y of its shape, the first step at which the integrator makes it grow. For Runge-Kutta methods
- * that is all: they see eigenvalues only. Others mix modes that are damped unalike, so that the reduced scene is run, and the
- * limit lowered where it grows before. Source: F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001).
+ * The modes of the reduced scene are (lambda^2 - lambda B - A) y = 0. Each is taken by itself, as x'' = alpha x + beta x' with the
+ * quotients alpha = y* A y and beta = y* B y, and has a first step at which the integrator makes it grow. For Runge-Kutta
+ * methods that is all, since they see eigenvalues only. Others mix modes that are damped unalike: so the reduced scene is run as
+ * well, and the limit lowered where that grows before. Source: F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001).
  */
 #include "steadfast/stability.h"
 
@@ -37,59 +37,48 @@ typedef struct search {
     stf_allocator allocator;
     stf_jacobian jacobian;
     stf_reduction reduction;
-    unsigned accelerations;
-    size_t most; /* shapes */
-    void *vectors, *space;
-    size_t vector_bytes, space_bytes;
+    unsigned accelerations; /* at most */
+    void *memory;
+    size_t bytes;
     double *scratch[SCRATCH]; /* [jacobian.length] */
-    double *h;                /* [most + 1][most] */
-    double complex *matrix, *values, *shape; /* [2 most][2 most], [2 most], [most] */
-    double *calm;             /* [count][count], in place of h: A without what grows by itself */
-    double growth;            /* of that */
+    double complex *matrix, *values, *shape;
+    double *h;     /* of stf_reduce; then `calm` */
+    double *calm;  /* [count][count]: A without what grows by itself */
+    double growth; /* of that */
 } search;
 
 /* ---- memory -------------------------------------------------------------------------------------------------------------- */
 
-static stf_result take_vectors(search *s)
+/* All that the call needs: `most` is the larger of the number of shapes and, with damping, twice that number. */
+static stf_result take_memory(search *s, size_t most)
 {
     stf_jacobian *j = &s->jacobian;
-    const size_t each = (SCRATCH + 1) * sizeof(double) + 4 * sizeof(stf_real);
-
-    if (j->length > SIZE_MAX / each)
-        return STF_ERROR_MEMORY;
-    s->vector_bytes = j->length * each;
-    s->vectors = stf_allocator_allocate(&s->allocator, s->vector_bytes);
-    if (!s->vectors)
-        return STF_ERROR_MEMORY;
-    stf_real **reals[] = {&j->position, &j->velocity, &j->acceleration, &j->base}; /* first: forces want them aligned */
-    for (size_t k = 0; k < 4; k++)
-        *reals[k] = (stf_real *)s->vectors + k * j->length;
-    j->root = (double *)(void *)((stf_real *)s->vectors + 4 * j->length);
-    for (size_t k = 0; k < SCRATCH; k++)
-        s->scratch[k] = j->root + (k + 1) * j->length;
-    return STF_OK;
-}
-
-static stf_result take_space(search *s)
-{
     stf_reduction *r = &s->reduction;
-    const size_t most = s->most, vectors = r->damped ? 2 * most + 1 : most + 1, order = r->damped ? 2 * most : most;
-    const size_t small = (order * order + order + most) * sizeof(double complex) + (3 * most + 1) * most * sizeof(double);
+    const size_t matrices = (most * most + 2 * most) * sizeof(double complex) + (3 * most + 1) * most * sizeof(double);
+    const size_t each = (2 + SCRATCH + most) * sizeof(double) + 4 * sizeof(stf_real);
 
-    if (s->jacobian.length > (SIZE_MAX - small) / (vectors * sizeof(double)))
+    if (j->length > (SIZE_MAX - matrices) / each)
         return STF_ERROR_MEMORY;
-    s->space_bytes = small + s->jacobian.length * vectors * sizeof(double);
-    s->space = stf_allocator_allocate(&s->allocator, s->space_bytes);
-    if (!s->space)
+    s->bytes = matrices + j->length * each;
+    s->memory = stf_allocator_allocate(&s->allocator, s->bytes);
+    if (!s->memory)
         return STF_ERROR_MEMORY;
-    s->matrix = s->space;
-    s->values = s->matrix + order * order;
-    s->shape = s->values + order;
+
+    stf_real *state = s->memory; /* first: forces may want it aligned */
+    j->position = state;
+    j->velocity = state + j->length;
+    j->acceleration = state + 2 * j->length;
+    j->base = state + 3 * j->length;
+    s->matrix = (double complex *)(void *)(state + 4 * j->length);
+    s->values = s->matrix + most * most;
+    s->shape = s->values + most;
     s->h = (double *)(void *)(s->shape + most);
     r->a = s->h + (most + 1) * most;
     r->b = r->a + most * most;
-    r->shapes = r->b + most * most;
-    r->damped_shapes = r->shapes + (most + 1) * s->jacobian.length;
+    j->root = r->b + most * most;
+    for (size_t k = 0; k < SCRATCH; k++)
+        s->scratch[k] = j->root + (k + 1) * j->length;
+    r->shapes = s->scratch[SCRATCH - 1] + j->length;
     return STF_OK;
 }
 
@@ -125,18 +114,15 @@ static bool settle(search *s)
     return stiffness > 0 || damping > 0;
 }
 
-static stf_result reduce(search *s)
+static void reduce(search *s)
 {
     stf_jacobian *j = &s->jacobian;
     const size_t left = (s->accelerations - j->spent - FOR_FORCES) / (s->reduction.damped ? 2 : 1);
+    const size_t most = left < j->unknowns ? left : j->unknowns;
 
-    s->most = left < j->unknowns ? left : j->unknowns;
-    const stf_result bad = take_space(s);
-    if (bad)
-        return bad;
     fill_with_noise(j, 3, s->reduction.shapes);
-    stf_reduce(&s->reduction, j, s->most, s->h);
-    return j->finite ? STF_OK : STF_ERROR_NOT_FINITE;
+    s->reduction.damped_shapes = s->reduction.shapes + (most + 1) * j->length;
+    stf_reduce(&s->reduction, j, most, s->h);
 }
 
 /* ---- modes --------------------------------------------------------------------------------------------------------------- */
@@ -175,7 +161,7 @@ static void find_shape(search *s, double complex lambda)
     stf_null_vector(n, s->matrix, s->shape);
 }
 
-/* y* M y. Of a symmetric matrix it is real, but for round-off. */
+/* y* M y */
 static double complex quotient(const search *s, const double *m)
 {
     const size_t n = s->reduction.count;
@@ -184,8 +170,11 @@ static double complex quotient(const search *s, const double *m)
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k < n; k++)
             sum += conj(s->shape[i]) * m[i * n + k] * s->shape[k];
-    return fabs(cimag(sum)) < ALIKE * cabs(sum) ? creal(sum) : sum;
+    return sum;
 }
+
+/* Without an imaginary part that is round-off. */
+static double complex tidy(double complex z) { return fabs(cimag(z)) < ALIKE * cabs(z) ? creal(z) : z; }
 
 /* The eigenvalue of x'' = alpha x + beta x' that is the larger, or the one that grows more. */
 static double complex root_of(const mode *m, bool growing)
@@ -198,13 +187,13 @@ static double complex root_of(const mode *m, bool growing)
 /* Fills in what the mode of m->lambda is, and its limit where that is below `lowest`. `before`: one that may be alike. */
 static void look_at(search *s, mode *m, const mode *before, double lowest)
 {
-    m->alpha = m->lambda * m->lambda;
+    m->alpha = tidy(m->lambda * m->lambda);
     m->beta = 0;
     m->limit = (double)INFINITY;
     if (s->reduction.damped) {
         find_shape(s, m->lambda);
-        m->alpha = quotient(s, s->reduction.a);
-        m->beta = quotient(s, s->reduction.b);
+        m->alpha = tidy(quotient(s, s->reduction.a));
+        m->beta = tidy(quotient(s, s->reduction.b));
     }
 
     const double size = cabs(root_of(m, false)), growth = creal(root_of(m, true)), noise = s->jacobian.noise;
@@ -272,40 +261,36 @@ static void lower(const search *s, mode *m)
     double below = 0, above = JUST_BELOW * m->limit;
 
     if (!r->damped || !(m->limit > 0) || !(m->limit < (double)INFINITY) ||
-        !stf_reduced_run_grows(s->integrator, r->count, s->calm, r->b, above))
+        !stf_run_grows(s->integrator, r->count, s->calm, r->b, above))
         return;
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = (below + above) / 2;
-        *(stf_reduced_run_grows(s->integrator, r->count, s->calm, r->b, middle) ? &above : &below) = middle;
+        *(stf_run_grows(s->integrator, r->count, s->calm, r->b, middle) ? &above : &below) = middle;
     }
     m->limit = below;
 }
 
 /* ---- the report ---------------------------------------------------------------------------------------------------------- */
 
-/* The shape of the mode in the world: its real and its imaginary part, turned so that the real one is as large as can be. */
-static void find_world_shape(search *s, const mode *m, double *u, double *w)
+/* The shape of the mode in the world: its real part, when its largest element is real. */
+static void find_world_shape(search *s, const mode *m, double *u)
 {
     const size_t n = s->jacobian.length;
+    double complex largest = 0;
 
     find_shape(s, m->lambda);
-    memset(u, 0, n * sizeof *u);
-    memset(w, 0, n * sizeof *w);
     for (size_t k = 0; k < s->reduction.count; k++)
-        for (size_t i = 0; i < n; i++) {
-            u[i] += creal(s->shape[k]) * s->reduction.shapes[k * n + i];
-            w[i] += cimag(s->shape[k]) * s->reduction.shapes[k * n + i];
-        }
-    const double angle = atan2(2 * stf_dot(n, u, w), stf_dot(n, u, u) - stf_dot(n, w, w)) / 2;
-
-    for (size_t i = 0; i < n; i++) {
-        const double turned = cos(angle) * u[i] + sin(angle) * w[i];
-        w[i] = cos(angle) * w[i] - sin(angle) * u[i];
-        u[i] = turned;
+        largest = cabs(s->shape[k]) > cabs(largest) ? s->shape[k] : largest;
+    memset(u, 0, n * sizeof *u);
+    for (size_t k = 0; k < s->reduction.count; k++) {
+        const double part = creal(s->shape[k] * conj(largest)) / cabs(largest);
+        for (size_t i = 0; i < n; i++)
+            u[i] += part * s->reduction.shapes[k * n + i];
     }
 }
 
-static size_t find_particle(const stf_jacobian *j, const double *u, const double *w)
+/* Where dx = u / sqrt(m) is largest. */
+static size_t find_particle(const stf_jacobian *j, const double *u)
 {
     double largest = -1;
     size_t found = SIZE_MAX;
@@ -314,7 +299,7 @@ static size_t find_particle(const stf_jacobian *j, const double *u, const double
         double square = 0;
         for (unsigned d = 0; d < j->at.dimensions; d++) {
             const size_t k = stf_particles_offset(&j->at, i) + d * j->at.stride;
-            square += j->root[k] * j->root[k] * (u[k] * u[k] + w[k] * w[k]);
+            square += j->root[k] * j->root[k] * u[k] * u[k];
         }
         if (square > largest)
             largest = square, found = i;
@@ -348,73 +333,68 @@ static unsigned count_substeps(double tick, double limit)
 static void describe(search *s, const mode *m, stf_stability *found)
 {
     const double unit = s->jacobian.frequency, size = cabs(root_of(m, false));
-    double *u = s->scratch[0], *w = s->scratch[1];
+    double *u = s->scratch[0];
 
-    find_world_shape(s, m, u, w);
+    find_world_shape(s, m, u);
     found->limit = m->limit / unit;
     found->load = found->step / found->limit;
     found->omega = unit * fmax(sqrt(cabs(m->alpha)), fabs(cimag(root_of(m, false))));
     found->damping = unit * fmax(-creal(m->beta), 0);
     found->omega_dt = found->omega * found->step;
     found->k_dt = found->damping * found->step;
-    found->particle = find_particle(&s->jacobian, u, w);
+    found->particle = find_particle(&s->jacobian, u);
     found->force = find_force(&s->jacobian, u, unit * size);
     found->substeps = count_substeps(stf_world_step_size(s->jacobian.world), found->limit);
     found->residual = s->reduction.left * cabs(s->shape[s->reduction.count - 1]) / (2 * size * size);
 }
 
-static stf_result measure(search *s, stf_stability *found)
+static void measure(search *s, stf_stability *found)
 {
     stf_jacobian *j = &s->jacobian;
 
     stf_jacobian_begin(j);
+    if (!j->finite || j->unknowns == 0 || !settle(s))
+        return;
+    reduce(s);
     if (!j->finite)
-        return STF_ERROR_NOT_FINITE;
-    if (j->unknowns == 0 || !settle(s))
-        return j->finite ? STF_OK : STF_ERROR_NOT_FINITE;
-
-    const stf_result bad = reduce(s);
-    if (bad)
-        return bad;
+        return;
     mode limiting = find_limiting(s);
     lower(s, &limiting);
     found->growth = s->growth * j->frequency;
     if (limiting.limit < (double)INFINITY)
         describe(s, &limiting, found);
-    return STF_OK;
 }
 
 stf_result stf_stability_measure(const stf_world *world, const stf_stability_def *def, stf_stability *stability)
 {
-    const stf_stability_def given = def ? *def : (stf_stability_def){.accelerations = 0};
-    const unsigned most = given.accelerations ? given.accelerations : STF_STABILITY_ACCELERATIONS_MAX;
-    search s = {.integrator = stf_world_integrator(world), .jacobian = {.world = world, .at = stf_world_view(world)}};
-
     if (!world || !stability)
         return STF_ERROR_NULL;
-    if (!stf_allocator_complete(given.allocator, &s.allocator))
-        return STF_ERROR_DESCRIPTOR;
 
+    const stf_stability_def given = def ? *def : (stf_stability_def){.accelerations = 0};
+    const unsigned most = given.accelerations ? given.accelerations : STF_STABILITY_ACCELERATIONS_MAX;
+    const stf_particles at = stf_world_view(world);
+    search s = {.integrator = stf_world_integrator(world), .jacobian = {.world = world, .at = at, .finite = true}};
     stf_stability found = {.limit = (double)INFINITY,
                            .step = stf_world_step_size(world) / stf_world_substeps(world),
                            .particle = SIZE_MAX,
                            .substeps = 1};
-    stf_result bad = STF_OK;
 
+    if (!stf_allocator_complete(given.allocator, &s.allocator))
+        return STF_ERROR_DESCRIPTOR;
     s.accelerations = most < ACCELERATIONS_MIN                 ? ACCELERATIONS_MIN
                       : most > STF_STABILITY_ACCELERATIONS_MAX ? STF_STABILITY_ACCELERATIONS_MAX
                                                                : most;
-    if (stf_world_count(world) > 0) {
-        const stf_particles *at = &s.jacobian.at;
-        s.jacobian.length = (at->count + at->stride - 1) / at->stride * at->stride * at->dimensions;
-        bad = take_vectors(&s);
-        if (!bad)
-            bad = measure(&s, &found);
+    if (at.count > 0) {
+        s.jacobian.length = (at.count + at.stride - 1) / at.stride * at.stride * at.dimensions;
+        const stf_result bad = take_memory(&s, s.accelerations);
+        if (bad)
+            return bad;
+        measure(&s, &found);
+        stf_allocator_release(&s.allocator, s.memory, s.bytes);
     }
-    stf_allocator_release(&s.allocator, s.space, s.space_bytes);
-    stf_allocator_release(&s.allocator, s.vectors, s.vector_bytes);
+    if (!s.jacobian.finite)
+        return STF_ERROR_NOT_FINITE;
     found.accelerations = s.jacobian.spent;
-    if (!bad)
-        *stability = found;
-    return bad;
+    *stability = found;
+    return STF_OK;
 }
