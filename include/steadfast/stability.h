@@ -1,11 +1,12 @@
 /*
  * stability: the largest step that a world's integrator survives in the scene as it stands.
  *
- * A step is stable as long as the integrator makes no small disturbance grow that would not grow by itself. How fast a scene
- * swings and how strongly it is damped says its Jacobian, A = da/dx and B = da/dv. No force has to supply it: products
- * with vectors come from differences of stf_world_accelerations, and so the user's own forces count like the library's. A Krylov
- * space reduces the scene to its extreme shapes, each mode there is x'' = -omega^2 x - k x', and the integrator's own step on
- * that says at which length it starts to grow: no table of limits, and so the user's own integrators count as well.
+ * A step is stable as long as the integrator makes no small disturbance grow that would not grow by itself. How fast a
+ * scene swings and how strongly it is damped says its Jacobian, A = da/dx and B = da/dv. No force has to supply it:
+ * products with vectors come from differences of stf_world_accelerations, and so the user's own forces count like the
+ * library's. A Krylov space reduces the scene to its extreme shapes, each mode there is x'' = -omega^2 x - k x', and the
+ * integrator's own step on that says at which length it starts to grow: no table of limits, and so the user's own
+ * integrators count as well.
  *
  *     stf_stability found;
  *     stf_stability_measure(world, NULL, &found);
@@ -15,12 +16,12 @@
  * Sources: D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357 (2004), sec. 2.3 (differences); Z. Bai, Y. Su, SIAM J. Matrix
  * Anal. Appl. 26, 640 (2005) (reduction); F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001) (modes of x'' = A x + B x').
  *
- * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit that
- * comes closer) wants another look. Modes that are much slower than the fastest (some 1/20 in float, 1/1000 in double) are not
- * told from free motion. Methods that make every undamped spring grow (explicit Euler, midpoint, improved Euler) are limited
- * by the least damped mode, not by a fast one: in large scenes of unlike dampers, or that buckle, it may be missed, and their
- * limit be off by half. All others are within 2 % in scenes whose dampers are in proportion to their springs, and within 5 %
- * in nets of the worst kind that were tried.
+ * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit
+ * that comes closer) wants another look. Modes that are much slower than the fastest (some 1/20 in float, 1/1000 in
+ * double) are not told from free motion. Methods that make every undamped spring grow (explicit Euler, midpoint, improved
+ * Euler) are limited by the least damped mode, not by a fast one: in large scenes of unlike dampers, or that buckle, it
+ * may be missed, and their limit be off by half. All others are within 2 % in scenes whose dampers are in proportion to
+ * their springs, and within 5 % in nets of the worst kind that were tried.
  */
 #ifndef STEADFAST_STABILITY_H
 #define STEADFAST_STABILITY_H
@@ -57,15 +58,15 @@ typedef struct stf_stability {
     unsigned substeps;     /* that bring the present tick to STF_STABILITY_SAFETY of the limit or below; 0: none does */
     double growth;         /* 1/s: how fast the scene itself flies apart (saddles, repelling forces): e^(growth t) at any
                               step. 0: it does not. No limit counts that, and no step helps */
-    double residual;       /* of the mode's eigenvalue, as a part of it: 0.01 is 1 % */
+    double residual;       /* of the mode's eigenvalue, as a part of it, or the error of the differences: 0.01 is 1 % */
     unsigned accelerations; /* that this call took */
 } stf_stability;
 
 /*
- * Measures the world where it stands, at its present integrator, and changes nothing. Errors: NULL, MEMORY, DESCRIPTOR (half an
- * allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world, s of them, and
- * some 2 s^2 operations for each component of a particle: 8 ms for the demo's cloth. Memory, for the time of the call: 8 s bytes
- * for each component of a particle (1.5 kB for one in 3D), and 150 kB.
+ * Measures the world where it stands, at its present integrator, and changes nothing. Errors: NULL, MEMORY, DESCRIPTOR
+ * (half an allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world,
+ * s of them, and some 2 s^2 operations for each component of a particle: 8 ms for the demo's cloth. Memory, for the time
+ * of the call: 8 s bytes for each component of a particle (1.5 kB for one in 3D), and 150 kB.
  */
 STF_API stf_result stf_stability_measure(const stf_world *world, const stf_stability_def *def, stf_stability *stability);
 

@@ -1,8 +1,8 @@
 /*
- * A step is linear in the extended state (x, v, history), so that from unit vectors it gives the columns of its amplification
- * matrix. The spectral radius is Gelfand's lim |M^n|^(1/n), n = 2^s by squaring, which unlike eigenvalues is well-conditioned where
- * two of them meet. Sources: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996), IV.2 and V.1; I. Gelfand,
- * Mat. Sbornik 9, 3 (1941).
+ * A step is linear in the extended state (x, v, history), so that from unit vectors it gives the columns of its
+ * amplification matrix. The spectral radius is Gelfand's lim |M^n|^(1/n), n = 2^s by squaring, which unlike eigenvalues is
+ * well-conditioned where two of them meet. Sources: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II
+ * (1996), IV.2 and V.1; I. Gelfand, Mat. Sbornik 9, 3 (1941).
  */
 #include "amplification.h"
 
@@ -17,8 +17,9 @@
 #define ALIGNMENT 64
 
 /*
- * The search starts at DT_LEAST: what grows there already is taken to grow at every step. ROUNDING is what the radius may be
- * above 1 where it is 1: the matrix has elements of stf_real, and squaring adds roundings of double; 2^-SQUARINGS is below it.
+ * The search starts at DT_LEAST: what grows there already is taken to grow at every step. ROUNDING is what the radius may
+ * be above 1 where it is 1: the matrix has elements of stf_real, and squaring adds roundings of double; 2^-SQUARINGS is
+ * below it.
  */
 #ifdef STF_DOUBLE
 #define DT_LEAST 1e-4

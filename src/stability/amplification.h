@@ -12,8 +12,8 @@
 #endif
 
 /*
- * The smallest step at which the mode x'' = alpha x + beta x' grows: 0 where it does at every step, INFINITY where it does at none
- * up to `most`. Time is in units that make alpha and beta about 1.
+ * The smallest step at which the mode x'' = alpha x + beta x' grows: 0 where it does at every step, INFINITY where it does
+ * at none up to `most`. Time is in units that make alpha and beta about 1.
  */
 double stf_first_growth(const stf_integrator *integrator, double complex alpha, double complex beta, double most);
 

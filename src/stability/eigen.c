@@ -1,7 +1,7 @@
 /*
- * Eigenvalues of a small complex matrix: reduced to Hessenberg form by elimination, then QR iterations with Wilkinson's shift and
- * Givens rotations. Sources: G. H. Golub, C. F. Van Loan, Matrix Computations (2013), sec. 7.4 and 7.5; EISPACK's comhes and
- * comqr (B. T. Smith et al., 1976).
+ * Eigenvalues of a small complex matrix: reduced to Hessenberg form by elimination, then QR iterations with Wilkinson's
+ * shift and Givens rotations. Sources: G. H. Golub, C. F. Van Loan, Matrix Computations (2013), sec. 7.4 and 7.5;
+ * EISPACK's comhes and comqr (B. T. Smith et al., 1976).
  */
 #include "eigen.h"
 

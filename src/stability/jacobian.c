@@ -1,8 +1,8 @@
 /*
- * J u = (a(x + e u) - a(x)) / e. The difference has to be long enough for round-off and short enough for curvature; the best
- * length depends on forces that are not known here. It is found by trying: lengths go down by a factor of 8 while products of
- * two lengths after one another get closer. Source: D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357 (2004), sec. 2.3; P. E.
- * Gill, W. Murray, M. A. Saunders, M. H. Wright, SIAM J. Sci. Stat. Comput. 4, 310 (1983).
+ * J u = (a(x + e u) - a(x)) / e. The difference has to be long enough for round-off and short enough for curvature; the
+ * best length depends on forces that are not known here. It is found by trying: lengths go down by a factor of 8 while
+ * products of two lengths after one another get closer. Source: D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357
+ * (2004), sec. 2.3; P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, SIAM J. Sci. Stat. Comput. 4, 310 (1983).
  */
 #include "jacobian.h"
 

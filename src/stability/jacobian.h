@@ -14,8 +14,8 @@
 #endif
 
 /*
- * Vectors are in mass-weighted coordinates, u = sqrt(m) dx: forces that have a potential make A = da/dx symmetric there. They
- * are laid out as the world's own arrays, and 0 where nothing moves: in spare lanes, and for the immovable.
+ * Vectors are in mass-weighted coordinates, u = sqrt(m) dx: forces that have a potential make A = da/dx symmetric there.
+ * They are laid out as the world's own arrays, and 0 where nothing moves: in spare lanes, and for the immovable.
  */
 typedef struct stf_jacobian {
     const stf_world *world;
@@ -39,8 +39,8 @@ void stf_jacobian_begin(stf_jacobian *j);
 void stf_jacobian_product(stf_jacobian *j, const double *p, const double *q, double *out);
 
 /*
- * Finds displacement or, after it, speed by products with `direction`, which they return the norm of, over that of the direction:
- * 0 where nothing depends on it. out and other are scratch. Cost: 1 to 7 accelerations.
+ * Finds displacement or, after it, speed by products with `direction`, which they return the norm of, over that of the
+ * direction: 0 where nothing depends on it. out and other are scratch. Cost: 1 to 7 accelerations.
  */
 double stf_jacobian_settle_displacement(stf_jacobian *j, const double *direction, double *out, double *other);
 double stf_jacobian_settle_speed(stf_jacobian *j, const double *direction, double *out, double *other);

@@ -1,9 +1,9 @@
 /*
- * Rayleigh and Ritz's method on Krylov's space of A + weight B: where A and B are symmetric their extreme shapes come first. A and B are
- * kept apart, so that x'' = A x + B x' stays one: what is damped in the scene is damped in the reduction, and no disturbance
- * grows that would not. Sources: W. E. Arnoldi, Quart. Appl. Math. 9, 17 (1951); Z. Bai, Y. Su, SIAM J. Matrix Anal. Appl. 26, 640
- * (2005) (projections that keep second order); J. W. Daniel, W. B. Gragg, L. Kaufman, G. W. Stewart, Math. Comp. 30, 772 (1976)
- * (orthogonalise again where much was cancelled).
+ * Rayleigh and Ritz's method on Krylov's space of A + weight B: where A and B are symmetric their extreme shapes come
+ * first. A and B are kept apart, so that x'' = A x + B x' stays one: what is damped in the scene is damped in the
+ * reduction, and no disturbance grows that would not. Sources: W. E. Arnoldi, Quart. Appl. Math. 9, 17 (1951); Z. Bai, Y.
+ * Su, SIAM J. Matrix Anal. Appl. 26, 640 (2005) (projections that keep second order); J. W. Daniel, W. B. Gragg, L.
+ * Kaufman, G. W. Stewart, Math. Comp. 30, 772 (1976) (orthogonalise again where much was cancelled).
  */
 #include "reduction.h"
 

@@ -21,8 +21,9 @@ typedef struct stf_reduction {
 } stf_reduction;
 
 /*
- * Krylov's space of A + weight B from the first of the shapes, which is given, of any norm but 0: `most` shapes, fewer where the space is
- * exhausted. h[most + 1][most] is scratch. Cost: one acceleration a shape, two where something depends on velocity.
+ * Krylov's space of A + weight B from the first of the shapes, which is given, of any norm but 0: `most` shapes, fewer
+ * where the space is exhausted. h[most + 1][most] is scratch. Cost: one acceleration a shape, two where something depends
+ * on velocity.
  */
 void stf_reduce(stf_reduction *r, stf_jacobian *j, size_t most, double *h);
 

@@ -1,8 +1,9 @@
 /*
- * The modes of the reduced scene are (lambda^2 - lambda B - A) y = 0. Each is taken by itself, as x'' = alpha x + beta x' with the
- * quotients alpha = y* A y and beta = y* B y, and has a first step at which the integrator makes it grow. For Runge-Kutta
- * methods that is all, since they see eigenvalues only. Others mix modes that are damped unalike: so the reduced scene is run as
- * well, and the limit lowered where that grows before. Source: F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001).
+ * The modes of the reduced scene are (lambda^2 - lambda B - A) y = 0. Each is taken by itself, as x'' = alpha x + beta x'
+ * with the quotients alpha = y* A y and beta = y* B y, and has a first step at which the integrator makes it grow. For
+ * Runge-Kutta methods that is all, since they see eigenvalues only. Others mix modes that are damped unalike: so the
+ * reduced scene is run as well, and the limit lowered where that grows before. Source: F. Tisseur, K. Meerbergen, SIAM
+ * Rev. 43, 235 (2001).
  */
 #include "steadfast/stability.h"
 
@@ -19,6 +20,7 @@
 #define FOR_FORCES 3 /* accelerations kept back for the share of each force */
 #define SCRATCH 3    /* vectors beside the shapes */
 
+#define FLOOR_MOST 0.5     /* however rough the forces are */
 #define FLOOR 2.0          /* times sqrt(noise): eigenvalues that small a part of the largest are round-off around 0 */
 #define GROWING 0.01       /* growth by this part of the eigenvalue is one of the scene itself, less is round-off */
 #define ALIKE 1e-6         /* modes whose damping over frequency differs by no more have the same limit, scaled */
@@ -231,7 +233,7 @@ static void calm_down(search *s, double complex lambda)
 static mode find_limiting(search *s)
 {
     const size_t count = find_eigenvalues(s);
-    const double floor_part = FLOOR * sqrt(s->jacobian.noise);
+    const double floor_part = fmin(FLOOR * sqrt(s->jacobian.noise), FLOOR_MOST);
     mode limiting = {.limit = (double)INFINITY}, before = limiting;
     double fastest = 0;
 
@@ -345,7 +347,8 @@ static void describe(search *s, const mode *m, stf_stability *found)
     found->particle = find_particle(&s->jacobian, u);
     found->force = find_force(&s->jacobian, u, unit * size);
     found->substeps = count_substeps(stf_world_step_size(s->jacobian.world), found->limit);
-    found->residual = s->reduction.left * cabs(s->shape[s->reduction.count - 1]) / (2 * size * size);
+    const double residual = s->reduction.left * cabs(s->shape[s->reduction.count - 1]) / (2 * size * size);
+    found->residual = fmax(residual, s->jacobian.noise);
 }
 
 static void measure(search *s, stf_stability *found)
