@@ -18,10 +18,11 @@
  *
  * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit
  * that comes closer) wants another look. Modes that are much slower than the fastest (some 1/20 in float, 1/1000 in
- * double) are not told from free motion. Methods that make every undamped spring grow (explicit Euler, midpoint, improved
- * Euler) are limited by the least damped mode, not by a fast one: in large scenes of unlike dampers, or that buckle, it
- * may be missed, and their limit be off by half. All others are within 2 % in scenes whose dampers are in proportion to
- * their springs, and within 5 % in nets of the worst kind that were tried.
+ * double) are not told from free motion. Where dampers are in proportion to springs, limits are right within 2 %. In 20
+ * nets of 200 masses with springs and dampers of all kinds, limits were up to some 20 % too long; the advice, which keeps away
+ * from them by STF_STABILITY_SAFETY, held in all. Explicit Euler is the exception: it is limited by the least damped mode,
+ * which in large nets hides among the others, and its limit may be off by half. Where springs buckle, the limits of
+ * midpoint and improved Euler may be too short.
  */
 #ifndef STEADFAST_STABILITY_H
 #define STEADFAST_STABILITY_H
@@ -33,7 +34,7 @@ extern "C" {
 #endif
 
 /* The advised step is at most this part of the limit. */
-#define STF_STABILITY_SAFETY 0.9
+#define STF_STABILITY_SAFETY 0.8
 
 /* The most accelerations of the world that a call takes. */
 #define STF_STABILITY_ACCELERATIONS_MAX 60
