@@ -10,6 +10,7 @@
 #define WINDOW_WIDTH 1280
 #define WINDOW_HEIGHT 720
 #define HUD_PERIOD 0.15     /* s */
+#define STABILITY_PERIOD 0.5 /* s: a look takes milliseconds for a cloth */
 #define MESSAGE_SECONDS 3.0
 #define DEFAULT_REFRESH 60  /* Hz, where the display doesn't say */
 #define PICTURES_MAX 1000
@@ -128,6 +129,11 @@ static void advance(app *a, double seconds)
     a->message_seconds -= seconds;
     a->frame.message = a->message_seconds > 0 ? a->message : NULL;
     a->hud_age += seconds;
+    a->stability_age += seconds;
+    if (a->stability_age >= STABILITY_PERIOD) {
+        (void)session_look_at_stability(&a->session); /* what is not finite any more keeps its last figures */
+        a->stability_age = 0;
+    }
     if (a->hud_age >= HUD_PERIOD) {
         figures_of_session(&a->frame.figures, &a->session, false);
         a->hud_age = 0;

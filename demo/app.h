@@ -21,6 +21,7 @@ typedef struct app {
     char message[MESSAGE_TEXT];
     double message_seconds;      /* that it stays */
     double hud_age;              /* s since the figures were renewed */
+    double stability_age;        /* s since the stability was looked at */
     bool running, save_asked;
 } app;
 

@@ -1,6 +1,7 @@
 #include "controls.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define PICK_REACH 30.0 /* layout length from the pointer to a particle */
 #define ZOOM_PER_NOTCH 1.15
@@ -55,6 +56,26 @@ static void change_substeps(app *a, int by)
         return;
     chosen.substeps = by < 0 ? chosen.substeps - 1 : chosen.substeps + 1;
     app_restart(a, &chosen);
+}
+
+/* Sets the substeps that keep the scene steady at its present step. */
+static void take_advice(app *a)
+{
+    settings chosen = a->session.settings;
+    const unsigned advised = session_advice(&a->session)->substeps;
+    char text[MESSAGE_TEXT];
+
+    if (advised == 0 || advised > SUBSTEPS_MAX) {
+        snprintf(text, sizeof text, "no substeps help: %s makes this motion grow at %s step", chosen.integrator->name,
+                 advised == 0 ? "every" : "any but a tiny");
+    } else {
+        if (advised != chosen.substeps) {
+            chosen.substeps = advised;
+            app_restart(a, &chosen);
+        }
+        snprintf(text, sizeof text, "as advised: %u substep%s a tick", advised, advised == 1 ? "" : "s");
+    }
+    app_say(a, text);
 }
 
 static void choose_integrator(app *a, int index, bool of_ghost)
@@ -118,10 +139,10 @@ static const binding bindings[] = {
     {SDLK_KP_MINUS, slower, true},           {SDLK_COMMA, halve_step, false},
     {SDLK_PERIOD, double_step, false},       {SDLK_SEMICOLON, fewer_substeps, true},
     {SDLK_QUOTE, more_substeps, true},       {SDLK_PAGEDOWN, fewer_substeps, true},
-    {SDLK_PAGEUP, more_substeps, true},      {SDLK_g, toggle_ghost, false},
-    {SDLK_v, reset_view, false},             {SDLK_h, toggle_hud, false},
-    {SDLK_F1, toggle_help, false},           {SDLK_F12, save_picture, false},
-    {SDLK_ESCAPE, quit, false},
+    {SDLK_PAGEUP, more_substeps, true},      {SDLK_a, take_advice, false},
+    {SDLK_g, toggle_ghost, false},           {SDLK_v, reset_view, false},
+    {SDLK_h, toggle_hud, false},             {SDLK_F1, toggle_help, false},
+    {SDLK_F12, save_picture, false},         {SDLK_ESCAPE, quit, false},
 };
 
 static void press(app *a, const SDL_KeyboardEvent *event)

@@ -20,6 +20,9 @@
 #define COLOUR_EXACT    ((SDL_Color){0xc9, 0xcf, 0xd8, 0xff})
 #define COLOUR_ATTRACTOR ((SDL_Color){0xf0, 0xe4, 0x42, 0xff}) /* yellow */
 #define COLOUR_MARKER   ((SDL_Color){0xf0, 0xe4, 0x42, 0xff})
+#define COLOUR_STEADY   ((SDL_Color){0x3f, 0xc9, 0x9a, 0xff}) /* bluish green, lightened */
+#define COLOUR_CLOSE    ((SDL_Color){0xff, 0xc1, 0x4d, 0xff}) /* amber */
+#define COLOUR_UNSTEADY ((SDL_Color){0xff, 0x6e, 0x6e, 0xff}) /* red, lightened */
 #define COLOUR_WARNING  ((SDL_Color){0xff, 0x8a, 0x3d, 0xff}) /* vermillion, lightened for small text */
 
 SDL_Color faded(SDL_Color colour, double opacity);

@@ -138,6 +138,35 @@ static void add_distance(figures *f, const session *s)
         add_number(f, COLOUR_TEXT, label, actor_distance(&s->main, &s->ghost), s->settings.scene->length_unit);
 }
 
+/* ---- stability ----------------------------------------------------------------------------------------------------------- */
+
+/* A word beside each colour, for those who can't tell the colours apart. */
+static void add_stability(figures *f, const session *s)
+{
+    const stf_stability *now = &s->stability, *advice = session_advice(s);
+    const double percent = 100 * now->load;
+    char text[FIGURE_TEXT];
+
+    if (s->main.lost || percent >= 100) {
+        if (now->limit == 0)
+            snprintf(text, sizeof text, "grows at every step");
+        else if (advice->substeps > s->settings.substeps)
+            snprintf(text, sizeof text, "grows: %u substeps hold (A)", advice->substeps);
+        else
+            snprintf(text, sizeof text, "grows");
+        add_row(f, COLOUR_UNSTEADY, "stability", text);
+    } else if (percent > 100 * STF_STABILITY_SAFETY) {
+        snprintf(text, sizeof text, "close: %.0f %% of the limit", percent);
+        add_row(f, COLOUR_CLOSE, "stability", text);
+    } else {
+        snprintf(text, sizeof text, percent > 0 ? "steady: %.2g %% of the limit" : "steady: no limit", percent);
+        add_row(f, COLOUR_STEADY, "stability", text);
+    }
+    snprintf(text, sizeof text, "ω dt %.3g, k dt %.3g", now->omega_dt, now->k_dt);
+    if (now->limit < (double)INFINITY)
+        add_row(f, COLOUR_MUTED, "", text);
+}
+
 void figures_add_measured(figures *f, const session *s, const actor *a)
 {
     const double cost = session_cost(s);
@@ -146,6 +175,8 @@ void figures_add_measured(figures *f, const session *s, const actor *a)
         add_row(f, COLOUR_MUTED, "cost", "not yet measured");
     else if (a == &s->main)
         add_number(f, COLOUR_TEXT, "cost", cost, "ns/particle/step");
+    if (a == &s->main)
+        add_stability(f, s);
     add_energy(f, s, a);
     add_error(f, s, a);
     if (a == &s->ghost)

@@ -4,7 +4,7 @@
 
 #include "session.h"
 
-#define FIGURES_MAX 28
+#define FIGURES_MAX 32
 #define FIGURE_TEXT 64
 
 typedef struct figure {

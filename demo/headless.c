@@ -128,6 +128,7 @@ static int draw_picture(session *s, const options *o, const char *path)
 
     if (bad)
         return fail("the picture", stf_result_text(bad));
+    (void)session_look_at_stability(s); /* what is not finite any more keeps its last figures */
     if (!frame_save(&f, s, o->width ? o->width : PICTURE_WIDTH, o->height ? o->height : PICTURE_HEIGHT, path))
         return fail(path, SDL_GetError());
     return EXIT_SUCCESS;
@@ -145,6 +146,7 @@ static int run_session(session *s, const options *o)
         if (bad)
             status = fail("the scene stopped", stf_result_text(bad));
     }
+    (void)session_look_at_stability(s);
     if (status == EXIT_SUCCESS && o->png)
         status = draw_picture(s, o, o->png);
     if (status == EXIT_SUCCESS)

@@ -26,6 +26,7 @@ static const key_help keys[] = {
     {"+  −", "time runs faster, slower"},
     {",  .", "halve, double the step"},
     {";  '", "fewer, more substeps"},
+    {"A", "substeps as advised"},
     {"left drag", "pull a particle"},
     {"wheel, right drag", "zoom, move the view"},
     {"V", "the scene's own view"},

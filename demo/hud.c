@@ -113,7 +113,7 @@ static double draw_message(canvas *c, double y, SDL_Color colour, const char *te
 static const char *advise(const actor *a, const session *s, bool still)
 {
     return still           ? ""
-           : a == &s->main ? ": try another (digits), a shorter step (,) or more substeps ('). R restarts"
+           : a == &s->main ? ": try another (digits), a shorter step (,) or the advised substeps (A). R restarts"
                            : ": try another (Shift digit)";
 }
 

@@ -65,10 +65,13 @@ stf_result session_start(session *s, const settings *chosen)
         made.last_tick = find_last_tick(&made.settings);
         bad = make_clock(&made, made.settings.step, &made.clock);
     }
+    if (!bad)
+        bad = session_look_at_stability(&made);
     if (bad) {
         session_close(&made);
         return bad;
     }
+    made.at_start = made.stability;
     session_close(s);
     *s = made;
     return STF_OK;
@@ -142,6 +145,16 @@ stf_result session_place(session *s)
     const stf_result bad = stf_world_copy_positions(s->main.world, s->alpha, s->main.drawn, stride);
 
     return bad || !s->ghost.world ? bad : stf_world_copy_positions(s->ghost.world, s->alpha, s->ghost.drawn, stride);
+}
+
+stf_result session_look_at_stability(session *s)
+{
+    return s->main.lost ? STF_OK : stf_stability_measure(s->main.world, NULL, &s->stability);
+}
+
+const stf_stability *session_advice(const session *s)
+{
+    return s->main.lost || s->stability.load >= 1 ? &s->at_start : &s->stability;
 }
 
 bool session_has_ended(const session *s) { return stf_world_ticks(s->main.world) >= s->last_tick; }

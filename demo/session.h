@@ -31,6 +31,7 @@ typedef struct session {
     double alpha; /* how far between the last two ticks to draw, 0 to 1 */
     unsigned ticks_this_frame;
     double dropped; /* time units, before this clock */
+    stf_stability at_start, stability; /* of the main world: before its first tick, and when it was last looked at */
     double costs[COST_SAMPLES]; /* ns a particle a step: a ring */
     size_t cost_count;
 } session;
@@ -53,6 +54,15 @@ bool session_has_ended(const session *s);
 
 /* Blends the last two states of each world into its `drawn`. */
 stf_result session_place(session *s);
+
+/* Measures the main world's stability where it stands, unless it is lost. */
+stf_result session_look_at_stability(session *s);
+
+/*
+ * The stability to take advice from: the latest, or, once the world grows and its state means nothing any more, that of the
+ * start.
+ */
+const stf_stability *session_advice(const session *s);
 
 stf_result session_set_paused(session *s, bool paused);
 stf_result session_set_speed(session *s, double speed);

@@ -18,7 +18,7 @@ static const float nominal_sizes[TEXT_SIZE_COUNT] = {[TEXT_SMALL] = 12, [TEXT_BO
 
 /* All characters with a cell, in the order of the cells. */
 static const char cell_characters[] = "?!\"#$%&'()*+,-./0123456789:;<=>@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`"
-                                      "abcdefghijklmnopqrstuvwxyz{|}~×−÷Δ…–";
+                                      "abcdefghijklmnopqrstuvwxyz{|}~×−÷Δω…–";
 
 #define CELL_COLUMNS 16
 

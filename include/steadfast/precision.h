@@ -90,6 +90,8 @@ typedef double stf_real;
 #define stf_world_accelerations     stf_world_accelerations_f64
 #define stf_world_find_non_finite   stf_world_find_non_finite_f64
 #define stf_world_describe          stf_world_describe_f64
+/* stability */
+#define stf_stability_measure       stf_stability_measure_f64
 /* trade */
 #define stf_trade                   stf_trade_f64
 #define stf_trade_def               stf_trade_def_f64
