@@ -22,34 +22,38 @@ MODE  := $(if $(SAN),sanitize,release)
 BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
 
 # What holds no reals exists once; all else is compiled for float and for double.
-ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c
+ONCE_SOURCES  := src/allocator.c src/clock.c src/result.c src/sort.c
 TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
+
+# The hot files once more for each instruction set that the compiler has; the world picks one at run time (src/variant.h).
+HOT_SOURCES  := src/kernels.c $(filter-out %/list.c,$(wildcard src/integrators/*.c)) $(wildcard src/forces/*.c)
+FLAGS_avx2   := -mavx2
+FLAGS_avx512 := -mavx512f -mavx512vl -mavx512bw -mavx512dq -mprefer-vector-width=512
+has           = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo yes)
+ISAS         := $(if $(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),$(foreach isa,avx2 avx512,$(if $(call has,$(FLAGS_$(isa))),$(isa))))
+HAS_ISAS     := $(if $(filter avx2,$(ISAS)),-DSTF_HAS_AVX2) $(if $(filter avx512,$(ISAS)),-DSTF_HAS_AVX512)
 DEMO_SOURCES  := $(wildcard demo/*.c)
 HEADERS       := $(wildcard include/steadfast/*.h)
 
 LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
-                   $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+                   $(TWICE_SOURCES:%.c=$(BUILD)/f64/%.o) \
+                   $(foreach isa,$(ISAS),$(HOT_SOURCES:%.c=$(BUILD)/f32-$(isa)/%.o) $(HOT_SOURCES:%.c=$(BUILD)/f64-$(isa)/%.o))
 DEMO_OBJECTS    := $(DEMO_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o)
 
 TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
 TESTS           := $(TEST_NAMES:%=$(BUILD)/tests/%-f32) $(TEST_NAMES:%=$(BUILD)/tests/%-f64)
 
-# The benchmark. Its references are compiled for each instruction set that the compiler knows here.
-x86_flags_baseline :=
-x86_flags_avx2     := -mavx2
-x86_flags_avx512   := -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512
-X86_SETS := $(if $(findstring x86_64,$(shell $(CC) -dumpmachine)),$(shell echo 'int x;' | \
-            $(CC) $(x86_flags_avx512) $(x86_flags_avx2) -x c -c - -o /dev/null 2>/dev/null && echo avx2 avx512))
-ISAS     := baseline $(X86_SETS)
-REFERENCE_SOURCES  := $(wildcard tests/bench/reference/*.c)
+# The benchmark. Its references are compiled for each instruction set, as the library's hot files are.
+BENCH_ISAS          := baseline $(ISAS)
+REFERENCE_SOURCES   := $(wildcard tests/bench/reference/*.c)
 BENCH_TWICE_SOURCES := $(addprefix tests/bench/,bodies.c chosen.c springs.c workload.c)
-BENCH_ONCE_SOURCES := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
-BENCH_OBJECTS      := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
-                      $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
-REFERENCE_OBJECTS  := $(foreach isa,$(ISAS),$(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f32/reference-$(isa)/%.o) \
-                     $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/f64/reference-$(isa)/%.o))
+BENCH_ONCE_SOURCES  := $(filter-out $(BENCH_TWICE_SOURCES),$(wildcard tests/bench/*.c))
+BENCH_OBJECTS       := $(BENCH_ONCE_SOURCES:%.c=$(BUILD)/f32/%.o) $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f32/%.o) \
+                       $(BENCH_TWICE_SOURCES:%.c=$(BUILD)/f64/%.o)
+REFERENCE_OBJECTS   := $(foreach isa,$(BENCH_ISAS),$(foreach precision,f32 f64,\
+                       $(REFERENCE_SOURCES:tests/bench/reference/%.c=$(BUILD)/$(precision)/reference-$(isa)/%.o)))
 
 STATIC := $(BUILD)/libsteadfast.a
 ifeq ($(shell uname -s),Darwin)
@@ -133,6 +137,20 @@ $(BUILD)/f64/src/%.o: src/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
 	$(say)$(COMPILE) -DSTF_DOUBLE -c $< -o $@
 
+$(BUILD)/f32/src/instructions.o $(BUILD)/f64/src/instructions.o: CPPFLAGS += $(HAS_ISAS)
+
+define variant
+$$(BUILD)/f32-$(1)/src/%.o: src/%.c Makefile | $$(DEPS_FIRST)
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $$(FLAGS_$(1)) -DSTF_VARIANT=$(1) -c $$< -o $$@
+
+$$(BUILD)/f64-$(1)/src/%.o: src/%.c Makefile | $$(DEPS_FIRST)
+	@mkdir -p $$(@D)
+	$$(say)$$(COMPILE) $$(FLAGS_$(1)) -DSTF_VARIANT=$(1) -DSTF_DOUBLE -c $$< -o $$@
+
+endef
+$(foreach isa,$(ISAS),$(eval $(call variant,$(isa))))
+
 $(STATIC): $(LIBRARY_OBJECTS)
 	@rm -f $@
 	$(say)$(AR) rcs $@ $^
@@ -211,24 +229,24 @@ bench: $(BENCH)
 define reference_rules
 $(BUILD)/f32/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
 	@mkdir -p $$(@D)
-	$$(say)$$(COMPILE) $(x86_flags_$(1)) -DREFERENCE_ISA=$(1) -c $$< -o $$@
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -c $$< -o $$@
 
 $(BUILD)/f64/reference-$(1)/%.o: tests/bench/reference/%.c Makefile
 	@mkdir -p $$(@D)
-	$$(say)$$(COMPILE) $(x86_flags_$(1)) -DREFERENCE_ISA=$(1) -DSTF_DOUBLE -c $$< -o $$@
+	$$(say)$$(COMPILE) $(FLAGS_$(1)) -DREFERENCE_ISA=$(1) -DSTF_DOUBLE -c $$< -o $$@
 endef
-$(foreach isa,$(ISAS),$(eval $(call reference_rules,$(isa))))
+$(foreach isa,$(BENCH_ISAS),$(eval $(call reference_rules,$(isa))))
 
 $(BUILD)/f32/tests/bench/%.o: tests/bench/%.c Makefile
 	@mkdir -p $(@D)
-	$(say)$(COMPILE) $(if $(X86_SETS),-DBENCH_X86_SETS) -c $< -o $@
+	$(say)$(COMPILE) $(HAS_ISAS) -c $< -o $@
 
 $(BUILD)/f64/tests/bench/%.o: tests/bench/%.c Makefile
 	@mkdir -p $(@D)
-	$(say)$(COMPILE) $(if $(X86_SETS),-DBENCH_X86_SETS) -DSTF_DOUBLE -c $< -o $@
+	$(say)$(COMPILE) $(HAS_ISAS) -DSTF_DOUBLE -c $< -o $@
 
 $(BENCH): $(BENCH_OBJECTS) $(REFERENCE_OBJECTS) $(STATIC)
-	$(say)$(LINK) $^ -lm -o $@
+	$(say)$(LINK) $^ -lm -pthread -o $@
 
 # ---- peers: other libraries, those that are here -----------------------------------------------------------------------------
 

@@ -19,7 +19,9 @@ static void change_scene(app *a, int by)
     for (; scenes[count]; count++)
         if (scenes[count] == a->session.settings.scene)
             now = count;
-    app_restart(a, &(settings){.scene = scenes[(now + by + count) % count], .ghost = a->session.settings.ghost});
+    app_restart(a, &(settings){.scene = scenes[(now + by + count) % count],
+                               .ghost = a->session.settings.ghost,
+                               .workers = a->session.settings.workers});
 }
 
 static void change_speed(app *a, double factor)

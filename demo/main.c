@@ -29,13 +29,27 @@ static int run(const options *o)
     return headless_pictures(o);
 }
 
+static int run_with_threads(options *o)
+{
+    if (o->threads > 1) {
+        o->settings.workers = workers_start(o->threads);
+        if (!o->settings.workers) {
+            fprintf(stderr, "demo: can't start %u threads: %s; ask for fewer\n", o->threads, SDL_GetError());
+            return EXIT_FAILURE;
+        }
+    }
+    const int status = run(o);
+    workers_stop(o->settings.workers);
+    return status;
+}
+
 int main(int argc, char *argv[])
 {
     options o;
     int status = EXIT_USAGE;
 
     if (options_parse(&o, argc, argv))
-        status = run(&o);
+        status = run_with_threads(&o);
     if (TTF_WasInit())
         TTF_Quit();
     SDL_Quit();

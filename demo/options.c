@@ -96,6 +96,18 @@ static bool take_substeps(options *o, const char *value)
     return false;
 }
 
+static bool take_threads(options *o, const char *value)
+{
+    uint64_t number;
+
+    if (read_whole(value, 1, WORKERS_MAX, &number)) {
+        o->threads = (unsigned)number;
+        return true;
+    }
+    fprintf(stderr, "demo: --threads wants a whole number from 1 to %d, not \"%s\"\n", WORKERS_MAX, value);
+    return false;
+}
+
 static bool take_ticks(options *o, const char *value)
 {
     o->has_ticks = read_whole(value, 0, TICKS_MAX, &o->ticks);
@@ -144,6 +156,7 @@ static const option all_options[] = {
     {"--ghost", "NAME", take_ghost, MODE_WINDOW, "a second integrator beside it"},
     {"--step", "S", take_step, MODE_WINDOW, "the scene's time units a tick"},
     {"--substeps", "N", take_substeps, MODE_WINDOW, "steps of the integrator a tick"},
+    {"--threads", "N", take_threads, MODE_WINDOW, "that step the world (1); the motion is the same, bit for bit"},
     {"--size", "WxH", take_size, MODE_WINDOW, "of window or picture, in pixels (1280x720)"},
     {"--pictures", "", NULL, MODE_PICTURES, "no window: a picture of each scene, or of the one asked for"},
     {"--out", "FOLDER", take_out, MODE_WINDOW, "where pictures go (the current folder)"},

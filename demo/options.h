@@ -15,6 +15,7 @@ enum { EXIT_USAGE = 2 }; /* beside EXIT_SUCCESS and EXIT_FAILURE */
 typedef struct options {
     run_mode mode;
     settings settings; /* scene NULL: none asked for */
+    unsigned threads; /* 0: not asked for */
     bool has_ticks;
     uint64_t ticks;
     int width, height; /* px; 0: not asked for */

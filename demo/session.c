@@ -15,8 +15,11 @@
 
 static stf_result open_actor(actor *a, const settings *chosen, const stf_integrator *integrator)
 {
-    const stf_world_def overrides = {
-        .integrator = integrator, .step = chosen->step, .substeps = chosen->substeps, .keep_previous = true};
+    const stf_world_def overrides = {.integrator = integrator,
+                                     .step = chosen->step,
+                                     .substeps = chosen->substeps,
+                                     .keep_previous = true,
+                                     .parallel = workers_parallel(chosen->workers)};
 
     return actor_open(a, chosen->scene, &overrides);
 }

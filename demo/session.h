@@ -6,6 +6,7 @@
 #define STEADFAST_DEMO_SESSION_H
 
 #include "actor.h"
+#include "workers.h"
 
 /* Chosen by the user; what is 0 or NULL is the scene's own. Ghost NULL: none. */
 typedef struct settings {
@@ -13,6 +14,7 @@ typedef struct settings {
     const stf_integrator *integrator, *ghost;
     double step; /* time units a tick */
     unsigned substeps;
+    workers *workers; /* the threads that step; NULL: the caller's alone. They outlive the session */
 } settings;
 
 #define COST_SAMPLES 61 /* frames that the median is taken over */

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "steadfast/base.h"
+#include "variant.h"
 
 /* The same bits everywhere needs arithmetic in the type itself: on 32-bit x86 compile with -msse2 -mfpmath=sse. */
 #if FLT_EVAL_METHOD != 0

@@ -116,6 +116,156 @@ static void block_stepping_equals_whole_world_stepping(void **state)
             }
 }
 
+/* Pushes nothing, but has a loop. */
+static void push_nothing(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)record_count, (void)particles, (void)time;
+}
+
+static const stf_force idle_field = {.name = "idle field", .apply = push_nothing};
+
+/* The library's drag, and one of the user's own: both are written into the loop. */
+static stf_real twice_the_record(const void *records, size_t record_count)
+{
+    (void)record_count;
+    return 2 * *(const stf_real *)records;
+}
+
+static const stf_force twice_drag = {.name = "twice", .record_size = sizeof(stf_real), .drag = twice_the_record};
+
+static stf_world *flying_world(const stf_integrator *integrator, size_t count, const stf_force *drag)
+{
+    stf_world *world = make_world((stf_world_def){
+        .integrator = integrator, .step = STEP, .substeps = 2, .gravity = {1, -9, (stf_real)0.3}, .keep_previous = true});
+    const stf_real coefficient = (stf_real)0.7;
+    uint64_t seed = count;
+
+    for (size_t i = 0; i < count; i++) {
+        stf_particle particle = random_particle(3, &seed);
+        if (i % 5 == 4)
+            particle.inverse_mass = 0;
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    if (drag)
+        add_force(world, drag, &coefficient);
+    return world;
+}
+
+/* A world where nothing acts but gravity and drag is stepped in one pass. That has to be seen nowhere but on the clock. */
+static void flight_changes_no_bit(void **state)
+{
+    (void)state;
+    const stf_force *const drags[] = {NULL, &stf_force_linear_drag, &twice_drag};
+
+    for (int k = 0; stf_integrators[k]; k++)
+        for (size_t c = 0; c < COUNT_OF(counts); c++)
+            for (size_t f = 0; f < COUNT_OF(drags); f++) {
+                stf_world *flying = flying_world(stf_integrators[k], counts[c], drags[f]);
+                stf_world *stepping = flying_world(stf_integrators[k], counts[c], drags[f]);
+
+                add_force(stepping, &idle_field, NULL);
+                for (unsigned ticks = 0; ticks <= 3; ticks++) {
+                    assert_ok(stf_world_step(flying, ticks));
+                    assert_ok(stf_world_step(stepping, ticks));
+                    assert_same_particles(flying, stepping);
+                    if (ticks == 2 && counts[c] > 1) {
+                        const stf_particle set = particle_of(flying, 1);
+                        assert_ok(stf_world_set(flying, 1, &set));
+                        assert_ok(stf_world_set(stepping, 1, &set));
+                    }
+                }
+                stf_world_destroy(flying);
+                stf_world_destroy(stepping);
+            }
+}
+
+static void user_drag_is_twice_its_record(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 0.25});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {4, 0, 0}, .inverse_mass = (stf_real)0.5}, NULL));
+    add_force(world, &twice_drag, &(stf_real){1});
+    assert_ok(stf_world_step(world, 1));
+    assert_true(particle_of(world, 0).velocity.x == 3); /* 4 - 0.25 x 2 x 0.5 x 4 */
+    stf_world_destroy(world);
+}
+
+/* What became of each particle of a world that is stepped in so many parts; the parts run in an order that the seed shuffles. */
+static void run_shuffled(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    unsigned order[64];
+    uint64_t *seed = user;
+
+    assert_true(tasks > 1 && tasks <= COUNT_OF(order));
+    for (unsigned i = 0; i < tasks; i++) {
+        const unsigned other = (unsigned)(next_random(seed) * (i + 1));
+        order[i] = order[other];
+        order[other] = i;
+    }
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, order[i]);
+}
+
+static stf_world *tied_world(const stf_integrator *integrator, size_t count, const stf_force *link, stf_parallel parallel)
+{
+    stf_world *world = make_world((stf_world_def){.integrator = integrator, .step = STEP, .parallel = parallel});
+    const stf_all_pairs_gravity gravity = {.gravitational_constant = (stf_real)0.01, .softening = 1};
+    uint64_t seed = count;
+
+    for (size_t i = 0; i < count; i++) {
+        const stf_particle particle = random_particle(3, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
+    add_force(world, link, link == &stf_force_all_pairs_gravity ? &gravity : NULL);
+    return world;
+}
+
+static void parts_change_no_bit(void **state)
+{
+    (void)state;
+    const stf_force *const links[] = {&idle_link, &stf_force_all_pairs_gravity};
+
+    for (int k = 0; stf_integrators[k]; k++)
+        for (size_t l = 0; l < COUNT_OF(links); l++)
+            for (unsigned tasks = 2; tasks <= 7; tasks += 5) {
+                uint64_t seed = tasks;
+                const stf_parallel shuffled = {.run = run_shuffled, .tasks = tasks, .user = &seed};
+                stf_world *alone = tied_world(stf_integrators[k], LARGEST, links[l], (stf_parallel){.tasks = 0});
+                stf_world *split = tied_world(stf_integrators[k], LARGEST, links[l], shuffled);
+
+                assert_ok(stf_world_step(alone, 2));
+                assert_ok(stf_world_step(split, 2));
+                assert_true(seed != tasks); /* it was split */
+                assert_same_particles(alone, split);
+                stf_world_destroy(alone);
+                stf_world_destroy(split);
+            }
+}
+
+/* An engine may hand out more tasks than there are blocks, or just one. */
+static void parts_are_never_more_than_blocks(void **state)
+{
+    (void)state;
+    for (unsigned tasks = 1; tasks <= 64; tasks += 63) {
+        uint64_t seed = 1;
+        const stf_parallel shuffled = {.run = run_shuffled, .tasks = tasks, .user = &seed};
+        stf_world *small = tied_world(&stf_rk4, 3, &idle_link, shuffled);
+        stf_world *large = tied_world(&stf_rk4, LARGEST, &idle_link, shuffled);
+
+        assert_ok(stf_world_step(small, 2));
+        assert_ok(stf_world_step(large, 2));
+        assert_ok(stf_world_remove_force(large, 2)); /* untied, it steps by blocks with scratch for each part */
+        assert_ok(stf_world_step(large, 2));
+        assert_true((seed != 1) == (tasks > 1));
+        stf_world_destroy(small);
+        stf_world_destroy(large);
+    }
+    stf_world *world = NULL;
+    assert_refused(stf_world_create(&(stf_world_def){.parallel = {.tasks = 2}}, &world), STF_ERROR_DESCRIPTOR);
+}
+
 static void many_ticks_in_one_call_equal_one_tick_in_many(void **state)
 {
     (void)state;
@@ -430,6 +580,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_particle_moves_alike_alone_and_in_every_count),
         cmocka_unit_test(block_stepping_equals_whole_world_stepping),
+        cmocka_unit_test(flight_changes_no_bit),
+        cmocka_unit_test(user_drag_is_twice_its_record),
+        cmocka_unit_test(parts_change_no_bit),
+        cmocka_unit_test(parts_are_never_more_than_blocks),
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
         cmocka_unit_test(groups_of_ticks_change_no_bit),
         cmocka_unit_test(tied_worlds_grow_like_others),

@@ -1,5 +1,6 @@
 /* Every force against its formula in the header, written out again in double; potentials; records that name particles. */
 #include <math.h>
+#include <string.h>
 
 #include "support/check.h"
 
@@ -178,6 +179,144 @@ static void springs_pull_both_ends_alike(void **state)
         /* Two forces of at most k 2 sqrt(3) + c 2 sqrt(3), and a direction that is ill-conditioned in near pairs. */
         check_forces(world, p, f, 2 * 2.5 * 2 * sqrt(3.0) * 8);
     }
+}
+
+#define WIDTH 40
+#define CLOTH (WIDTH * 20)
+
+/* A cloth with all its springs (whole runs of both ends), some of random ends, and some twice. */
+static size_t cloth_springs(stf_spring springs[8 * CLOTH])
+{
+    static const uint32_t steps[] = {1, 2, WIDTH, 2 * WIDTH, WIDTH + 1, WIDTH - 1};
+    uint64_t seed = 7;
+    size_t count = 0;
+
+    for (uint32_t i = 0; i < CLOTH; i++)
+        for (size_t s = 0; s < COUNT_OF(steps); s++)
+            if (i + steps[s] < CLOTH && (steps[s] >= WIDTH || i % WIDTH + steps[s] < WIDTH))
+                springs[count++] = (stf_spring){.a = i, .b = i + steps[s]};
+    for (size_t extra = 0; extra < CLOTH; extra++) {
+        const uint32_t a = (uint32_t)(next_random(&seed) * CLOTH), b = (uint32_t)(next_random(&seed) * CLOTH);
+        if (a != b)
+            springs[count++] = (stf_spring){.a = a, .b = b};
+    }
+    springs[count++] = springs[5];
+    for (size_t s = 0; s < count; s++) {
+        springs[s].stiffness = (stf_real)(1 + next_random(&seed));
+        springs[s].damping = (stf_real)next_random(&seed);
+        springs[s].rest_length = (stf_real)next_random(&seed);
+    }
+    return count;
+}
+
+static void shuffle(stf_spring *springs, size_t count, uint64_t seed)
+{
+    for (size_t i = count; i-- > 1;) {
+        const size_t other = (size_t)(next_random(&seed) * (double)(i + 1));
+        const stf_spring swapped = springs[i];
+        springs[i] = springs[other];
+        springs[other] = swapped;
+        if (i % 2) { /* which end is a changes nothing either */
+            const uint32_t end = springs[i].a;
+            springs[i].a = springs[i].b;
+            springs[i].b = end;
+        }
+    }
+}
+
+/* Each spring by itself, in double. */
+static void add_spring_forces(const stf_spring *springs, size_t count, const stf_particle *particles, vector *forces)
+{
+    for (size_t s = 0; s < count; s++) {
+        const stf_particle *a = &particles[springs[s].a], *b = &particles[springs[s].b];
+        const vector d = difference(vector_of(a->position), vector_of(b->position));
+        const vector w = difference(vector_of(a->velocity), vector_of(b->velocity));
+        const double length = sqrt(dot(d, d));
+        const double pull = (double)springs[s].stiffness * (length - (double)springs[s].rest_length) +
+                            (double)springs[s].damping * dot(w, d) / length;
+
+        for (int k = 0; k < 3; k++) {
+            forces[springs[s].a].at[k] -= pull * d.at[k] / length;
+            forces[springs[s].b].at[k] += pull * d.at[k] / length;
+        }
+    }
+}
+
+/* Runs of both ends are computed as vectors, the rest one by one: what comes out is the sum over all springs. */
+static void springs_of_a_cloth_add_up(void **state)
+{
+    (void)state;
+    static stf_spring springs[8 * CLOTH];
+    static stf_particle particles[CLOTH];
+    static vector forces[CLOTH];
+
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++) {
+        const size_t count = cloth_springs(springs);
+        stf_world *world = random_world(dimensions, CLOTH);
+
+        memset(forces, 0, sizeof forces);
+        copy_particles(world, particles);
+        add_spring_forces(springs, count, particles, forces);
+        assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+        check_forces(world, particles, forces, 400); /* some 14 springs an end, each a few roundings of some newtons */
+    }
+}
+
+static void the_order_of_springs_changes_no_bit(void **state)
+{
+    (void)state;
+    static stf_spring springs[8 * CLOTH];
+    static stf_particle first[CLOTH];
+    const size_t count = cloth_springs(springs);
+
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        stf_world *world = random_world(3, CLOTH);
+
+        if (seed > 0)
+            shuffle(springs, count, seed);
+        assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+        assert_ok(stf_world_step(world, 1));
+        for (size_t i = 0; i < CLOTH; i++) {
+            const stf_particle particle = particle_of(world, i);
+            if (seed == 0)
+                first[i] = particle;
+            assert_memory_equal(&particle, &first[i], sizeof particle);
+        }
+        stf_world_destroy(world);
+    }
+}
+
+/* Springs keep their order through removals, so that a world that lost particles is as one that never had them. */
+static void removals_leave_springs_in_order(void **state)
+{
+    (void)state;
+    static stf_spring springs[8 * CLOTH];
+    const size_t count = cloth_springs(springs);
+    stf_world *thinned = random_world(3, CLOTH), *fresh = make_world((stf_world_def){.integrator = &peek, .step = 1});
+    stf_force_id id;
+
+    shuffle(springs, count, 3);
+    assert_ok(stf_world_add_force(thinned, &stf_force_springs, springs, count, &id));
+    for (size_t i = 0; i < 50; i++)
+        assert_ok(stf_world_remove(thinned, i * 13, NULL));
+
+    size_t left;
+    const void *records = stf_world_force_records(thinned, id, &left);
+    for (size_t i = 0; i < stf_world_count(thinned); i++) {
+        const stf_particle particle = particle_of(thinned, i);
+        assert_ok(stf_world_add(fresh, &particle, NULL));
+    }
+    assert_true(left > 0 && left < count);
+    assert_ok(stf_world_add_force(fresh, &stf_force_springs, records, left, NULL));
+    assert_memory_equal(stf_world_force_records(fresh, 1, NULL), records, left * sizeof(stf_spring));
+    assert_ok(stf_world_step(thinned, 1));
+    assert_ok(stf_world_step(fresh, 1));
+    for (size_t i = 0; i < stf_world_count(thinned); i++) {
+        const stf_particle a = particle_of(thinned, i), b = particle_of(fresh, i);
+        assert_memory_equal(&a, &b, sizeof a);
+    }
+    stf_world_destroy(thinned);
+    stf_world_destroy(fresh);
 }
 
 static void anchored_springs_pull_to_their_anchors_in_any_order(void **state)
@@ -491,6 +630,9 @@ int main(void)
         cmocka_unit_test(quadratic_drag_is_minus_c_speed_v),
         cmocka_unit_test(attractors_pull_by_the_inverse_square),
         cmocka_unit_test(springs_pull_both_ends_alike),
+        cmocka_unit_test(springs_of_a_cloth_add_up),
+        cmocka_unit_test(the_order_of_springs_changes_no_bit),
+        cmocka_unit_test(removals_leave_springs_in_order),
         cmocka_unit_test(anchored_springs_pull_to_their_anchors_in_any_order),
         cmocka_unit_test(all_pairs_gravity_is_the_sum_over_all_others),
         cmocka_unit_test(coincidence_pulls_nowhere),

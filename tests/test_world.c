@@ -184,6 +184,32 @@ static void missing_particles_pointers_and_forces_are_refused_and_change_nothing
     stf_world_destroy(world);
 }
 
+/* A lot is refused as a whole, wherever in it the bad one is; what is added later finds the lanes empty. */
+static void a_bad_particle_late_in_a_lot_leaves_nothing_of_it(void **state)
+{
+    (void)state;
+    enum { LOT = 3 * STF_BLOCK_MAX };
+    static stf_particle lot[LOT];
+
+    for (size_t bad = 0; bad < LOT; bad += LOT / 6 - 1) {
+        stf_world *world = busy_world(NULL), *untouched = busy_world(NULL);
+        const uint64_t before = hash_of(world);
+
+        for (size_t i = 0; i < LOT; i++)
+            lot[i] = (stf_particle){.position = {1, 2, 0}, .velocity = {3, 4, 0}, .inverse_mass = i == bad ? -1 : 1};
+        assert_refused(stf_world_add_many(world, lot, LOT, NULL), STF_ERROR_MASS);
+        assert_true(hash_of(world) == before);
+        assert_ok(stf_world_step(world, 3));
+        assert_ok(stf_world_step(untouched, 3));
+        assert_true(hash_of(world) == hash_of(untouched));
+        const stf_particles view = stf_world_view(world);
+        for (size_t lane = view.count; lane < view.stride; lane++)
+            assert_true(view.position[lane] == 0 && view.velocity[lane + view.stride] == 0 && view.inverse_mass[lane] == 0);
+        stf_world_destroy(world);
+        stf_world_destroy(untouched);
+    }
+}
+
 static void bad_settings_are_refused_and_change_nothing(void **state)
 {
     (void)state;
@@ -716,23 +742,28 @@ static void particles_added_on_the_way_start_like_the_first(void **state)
     }
 }
 
-static bool steps_by_blocks(const stf_world *world)
+static bool describes(const stf_world *world, const char *what)
 {
     char text[4096];
 
     stf_world_describe(world, text, sizeof text);
-    return strstr(text, "block by block") != NULL;
+    return strstr(text, what) != NULL;
 }
+
+static bool steps_by_blocks(const stf_world *world) { return !describes(world, "every pass runs over the whole world"); }
 
 static void only_link_forces_make_a_world_step_as_a_whole(void **state)
 {
     (void)state;
     stf_world *world = make_world((stf_world_def){0});
-    stf_force_id drag, link, other_link;
+    stf_force_id drag, quadratic, link, other_link;
 
-    assert_true(steps_by_blocks(world));
+    assert_true(steps_by_blocks(world) && describes(world, "free flight"));
     assert_ok(stf_world_add_force(world, &stf_force_linear_drag, &(stf_linear_drag){1}, 1, &drag));
-    assert_true(steps_by_blocks(world));
+    assert_true(steps_by_blocks(world) && describes(world, "free flight"));
+    assert_ok(stf_world_add_force(world, &stf_force_quadratic_drag, &(stf_quadratic_drag){1}, 1, &quadratic));
+    assert_true(steps_by_blocks(world) && describes(world, "block by block"));
+    assert_ok(stf_world_remove_force(world, quadratic));
     assert_ok(stf_world_add_force(world, &idle_link, NULL, 0, &link));
     assert_ok(stf_world_add_force(world, &idle_link, NULL, 0, &other_link));
     assert_false(steps_by_blocks(world));
@@ -1122,6 +1153,7 @@ int main(void)
         cmocka_unit_test(bad_defs_are_refused),
         cmocka_unit_test(bad_particles_are_refused_and_change_nothing),
         cmocka_unit_test(missing_particles_pointers_and_forces_are_refused_and_change_nothing),
+        cmocka_unit_test(a_bad_particle_late_in_a_lot_leaves_nothing_of_it),
         cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
         cmocka_unit_test(bad_forces_are_refused_and_change_nothing),
         cmocka_unit_test(every_result_has_its_own_text),

@@ -76,6 +76,16 @@ typedef struct stf_allocator {
     void *user;
 } stf_allocator;
 
+/*
+ * The engine's threads. `run` calls task(context, index) once for every index below `tasks`, on any threads and in any order,
+ * and returns when all are done. All zero: the caller's thread does all. Results never depend on it.
+ */
+typedef struct stf_parallel {
+    void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);
+    unsigned tasks; /* into how many a step is split at most: as many as there are threads, or a few times that */
+    void *user;
+} stf_parallel;
+
 #ifdef __cplusplus
 }
 #endif

@@ -4,14 +4,23 @@
 
 /*
  * STF_API marks what the shared library exports; all else stays hidden. STF_PRINTF has the compiler check a format's
- * arguments.
+ * arguments. STF_INLINE: written into its callers at any size, so that arguments that are constant there make a loop of its
+ * own. STF_CPU_HAS asks this machine for an x86 feature, such as "avx2".
  */
 #if defined(__GNUC__) || defined(__clang__)
 #define STF_API __attribute__((visibility("default")))
 #define STF_PRINTF(format_argument, first_argument) __attribute__((format(printf, format_argument, first_argument)))
+#define STF_INLINE static inline __attribute__((always_inline))
 #else
 #define STF_API
 #define STF_PRINTF(format_argument, first_argument)
+#define STF_INLINE static inline
+#endif
+
+#if (defined(__GNUC__) || defined(__clang__)) && (defined(__x86_64__) || defined(__i386__))
+#define STF_CPU_HAS(feature) (__builtin_cpu_supports(feature) != 0)
+#else
+#define STF_CPU_HAS(feature) false
 #endif
 
 #endif

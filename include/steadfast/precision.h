@@ -25,6 +25,7 @@ typedef double stf_real;
 #define stf_particles_offset        stf_particles_offset_f64
 /* integrator */
 #define stf_system                  stf_system_f64
+#define stf_flight                  stf_flight_f64
 #define stf_integrator              stf_integrator_f64
 #define stf_explicit_euler          stf_explicit_euler_f64
 #define stf_semi_implicit_euler     stf_semi_implicit_euler_f64
@@ -81,6 +82,7 @@ typedef double stf_real;
 #define stf_world_substeps          stf_world_substeps_f64
 #define stf_world_set_integrator    stf_world_set_integrator_f64
 #define stf_world_integrator        stf_world_integrator_f64
+#define stf_world_isa               stf_world_isa_f64
 #define stf_world_dimensions        stf_world_dimensions_f64
 #define stf_world_energy            stf_world_energy_f64
 #define stf_world_momentum          stf_world_momentum_f64

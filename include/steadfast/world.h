@@ -28,10 +28,11 @@ typedef struct stf_world_def {
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
     stf_allocator allocator;          /* all zero: malloc and free */
+    stf_parallel parallel;            /* all zero: no threads. Forces of your own are then called from several at once */
 } stf_world_def;
 
 /* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator; half an
-   allocator). */
+   allocator; tasks without run). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
@@ -152,6 +153,12 @@ STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
 /* ---- what can be asked ------------------------------------------------------------------------------------------------- */
 
 STF_API unsigned stf_world_dimensions(const stf_world *world);
+
+/*
+ * The instruction set that this world's loops were compiled for: "avx512", "avx2" or "baseline", the widest that the machine
+ * has, or what the environment variable STEADFAST_ISA named when the world was made. All give the same bits.
+ */
+STF_API const char *stf_world_isa(const stf_world *world);
 
 typedef struct stf_energy {
     double kinetic;   /* J: sum of m v^2 / 2 */

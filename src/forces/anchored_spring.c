@@ -1,6 +1,6 @@
-#include <string.h>
-
 #include "spring.h"
+
+#include "../sort.h"
 #include "steadfast/force.h"
 
 static stf_result anchored_check(const void *record, unsigned dimensions, size_t particle_count)
@@ -27,76 +27,23 @@ static bool anchored_renumber(void *record, size_t removed, size_t last)
     return true;
 }
 
-static int compare_reals(stf_real a, stf_real b) { return (a > b) - (a < b); }
-
 /* By particle, so that each block finds its own; then by all else, so that the order never depends on the sort. */
-static int compare_anchored(const stf_anchored_spring *a, const stf_anchored_spring *b)
+static int compare_anchored(const void *left, const void *right)
 {
+    const stf_anchored_spring *a = left, *b = right;
     const int by_particle = (a->particle > b->particle) - (a->particle < b->particle);
     const stf_real fields_a[] = {a->anchor.x, a->anchor.y, a->anchor.z, a->stiffness, a->damping, a->rest_length};
     const stf_real fields_b[] = {b->anchor.x, b->anchor.y, b->anchor.z, b->stiffness, b->damping, b->rest_length};
     int order = by_particle;
 
     for (size_t i = 0; order == 0 && i < sizeof fields_a / sizeof *fields_a; i++)
-        order = compare_reals(fields_a[i], fields_b[i]);
+        order = stf_compare_reals(fields_a[i], fields_b[i]);
     return order;
 }
 
-/* Puts springs[end] where it belongs among springs[0 .. end), which are sorted. */
-static void insert_last(stf_anchored_spring *springs, size_t end)
-{
-    const stf_anchored_spring last = springs[end];
-    size_t at = end;
-
-    while (at > 0 && compare_anchored(&springs[at - 1], &last) > 0)
-        at--;
-    memmove(&springs[at + 1], &springs[at], (end - at) * sizeof *springs);
-    springs[at] = last;
-}
-
-/* Restores the heap below `root`: no spring is less than its children. */
-static void sift_down(stf_anchored_spring *springs, size_t root, size_t count)
-{
-    const stf_anchored_spring sifted = springs[root];
-
-    for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
-        if (child + 1 < count && compare_anchored(&springs[child], &springs[child + 1]) < 0)
-            child++;
-        if (compare_anchored(&sifted, &springs[child]) >= 0)
-            break;
-        springs[root] = springs[child];
-        root = child;
-    }
-    springs[root] = sifted;
-}
-
-/* Heapsort (J. W. J. Williams, Comm. ACM 7, 347 (1964)): qsort may allocate, behind the engine's allocator. */
-static void sort(stf_anchored_spring *springs, size_t count)
-{
-    for (size_t root = count / 2; root-- > 0;)
-        sift_down(springs, root, count);
-    for (size_t end = count; end-- > 1;) {
-        const stf_anchored_spring largest = springs[0];
-        springs[0] = springs[end];
-        springs[end] = largest;
-        sift_down(springs, 0, end);
-    }
-}
-
-/* A removed particle leaves the springs sorted but for the few at the end whose particle took its index. */
-#define FEW_OUT_OF_ORDER 16
-
 static void anchored_arrange(void *records, size_t record_count)
 {
-    stf_anchored_spring *springs = records;
-    size_t sorted = 1;
-
-    while (sorted < record_count && compare_anchored(&springs[sorted - 1], &springs[sorted]) <= 0)
-        sorted++;
-    if (record_count - sorted > FEW_OUT_OF_ORDER)
-        sort(springs, record_count);
-    for (; sorted < record_count && record_count - sorted <= FEW_OUT_OF_ORDER; sorted++)
-        insert_last(springs, sorted);
+    stf_sort(records, record_count, sizeof(stf_anchored_spring), compare_anchored);
 }
 
 /* The first of the springs, sorted by particle, whose particle is not below `particle`. */

@@ -10,7 +10,7 @@ static inline double stf_square_between(const stf_real *a, size_t a_stride, cons
 {
     double square = 0;
 
-    for (unsigned d = 0; d < dimensions; d++) {
+    for (unsigned d = 0; d < STF_DIMENSIONS_MAX && d < dimensions; d++) {
         const double distance = (double)a[d * a_stride] - (double)b[d * b_stride];
         square += distance * distance;
     }

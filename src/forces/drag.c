@@ -18,60 +18,44 @@ static stf_result quadratic_check(const void *record, unsigned dimensions, size_
     return check_coefficient(((const stf_quadratic_drag *)record)->coefficient);
 }
 
-/* F = -k v */
-static void linear_row(size_t n, stf_real *restrict force, const stf_real *restrict v, stf_real k)
-{
-    for (size_t i = 0; i < n; i++)
-        force[i] -= k * v[i];
-}
-
-static void linear_apply(const void *records, size_t record_count, const stf_particles *particles, double time)
+static stf_real linear_drag(const void *records, size_t record_count)
 {
     const stf_linear_drag *drag = records;
+    stf_real sum = 0;
+
+    for (size_t r = 0; r < record_count; r++)
+        sum += drag[r].coefficient;
+    return sum;
+}
+
+/* F = -(c |v|) v. `dimensions` is a constant at each call, so the compiler makes a loop for each. */
+STF_INLINE void quadratic(unsigned dimensions, size_t n, size_t stride, stf_real *restrict force,
+                             const stf_real *restrict v, stf_real c)
+{
+    for (size_t i = 0; i < n; i++) {
+        const stf_real vx = v[i], vy = dimensions > 1 ? v[stride + i] : 0, vz = dimensions > 2 ? v[2 * stride + i] : 0;
+        const stf_real c_speed = c * stf_sqrt(vx * vx + vy * vy + vz * vz);
+
+        force[i] -= c_speed * vx;
+        if (dimensions > 1)
+            force[stride + i] -= c_speed * vy;
+        if (dimensions > 2)
+            force[2 * stride + i] -= c_speed * vz;
+    }
+}
+
+static void quadratic_apply(const void *records, size_t record_count, const stf_particles *p, double time)
+{
+    const stf_quadratic_drag *drag = records;
     (void)time;
 
     for (size_t r = 0; r < record_count; r++)
-        for (unsigned d = 0; d < particles->dimensions; d++)
-            linear_row(particles->count, particles->force + d * particles->stride,
-                       particles->velocity + d * particles->stride, drag[r].coefficient);
-}
-
-static void add_square(size_t n, stf_real *restrict sum, const stf_real *restrict v)
-{
-    for (size_t i = 0; i < n; i++)
-        sum[i] += v[i] * v[i];
-}
-
-/* c |v| from |v|^2 */
-static void square_root(size_t n, stf_real *restrict speed, stf_real c)
-{
-    for (size_t i = 0; i < n; i++)
-        speed[i] = c * stf_sqrt(speed[i]);
-}
-
-/* F = -(c |v|) v */
-static void quadratic_row(size_t n, stf_real *restrict force, const stf_real *restrict v,
-                          const stf_real *restrict c_speed)
-{
-    for (size_t i = 0; i < n; i++)
-        force[i] -= c_speed[i] * v[i];
-}
-
-static void quadratic_apply(const void *records, size_t record_count, const stf_particles *particles, double time)
-{
-    const stf_quadratic_drag *drag = records;
-    const size_t n = particles->count, stride = particles->stride;
-    (void)time;
-
-    for (size_t r = 0; r < record_count; r++) {
-        stf_real speed[STF_BLOCK_MAX] = {0};
-
-        for (unsigned d = 0; d < particles->dimensions; d++)
-            add_square(n, speed, particles->velocity + d * stride);
-        square_root(n, speed, drag[r].coefficient);
-        for (unsigned d = 0; d < particles->dimensions; d++)
-            quadratic_row(n, particles->force + d * stride, particles->velocity + d * stride, speed);
-    }
+        if (p->dimensions == 1)
+            quadratic(1, p->count, p->stride, p->force, p->velocity, drag[r].coefficient);
+        else if (p->dimensions == 2)
+            quadratic(2, p->count, p->stride, p->force, p->velocity, drag[r].coefficient);
+        else
+            quadratic(3, p->count, p->stride, p->force, p->velocity, drag[r].coefficient);
 }
 
 const stf_force stf_force_linear_drag = {
@@ -79,7 +63,7 @@ const stf_force stf_force_linear_drag = {
     .kind = STF_FIELD,
     .depends_on = STF_ON_VELOCITY,
     .record_size = sizeof(stf_linear_drag),
-    .apply = linear_apply,
+    .drag = linear_drag,
     .check = linear_check,
 };
 

@@ -26,58 +26,45 @@ static stf_result all_pairs_check(const void *record, unsigned dimensions, size_
                                                                                                : STF_ERROR_PARAMETERS;
 }
 
-/* (|d|^2 + e^2) of a block of particles, d = x - centre, in `squares`. */
-static void softened_squares(const stf_particles *particles, const stf_real centre[STF_DIMENSIONS_MAX], stf_real softening,
-                             stf_real squares[STF_BLOCK_MAX])
-{
-    for (size_t i = 0; i < particles->count; i++)
-        squares[i] = softening * softening;
-    for (unsigned d = 0; d < particles->dimensions; d++) {
-        const stf_real *x = particles->position + d * particles->stride;
-        for (size_t i = 0; i < particles->count; i++)
-            squares[i] += (x[i] - centre[d]) * (x[i] - centre[d]);
-    }
-}
-
 /*
- * In place of squares 1 / distance, and strength m / square; 0 at the very centre and for the immovable. Two factors, as the
- * cube of a distance leaves the floats long before the force does.
+ * F = -m mu d / (|d|^2 + e^2)^(3/2), as two factors: the cube of a distance leaves the reals long before the force does. 0 at
+ * the very centre and for the immovable. `dimensions` is a constant at each call, so the compiler makes a loop for each.
  */
-static void attraction(size_t n, stf_real *restrict squares, stf_real *restrict pulls,
-                       const stf_real *restrict inverse_mass, stf_real strength)
+STF_INLINE void attract(unsigned dimensions, size_t n, size_t stride, stf_real *restrict force, const stf_real *restrict x,
+                           const stf_real *restrict inverse_mass, const stf_attractor *restrict attractor)
 {
+    const stf_real cx = attractor->position.x, cy = attractor->position.y, cz = attractor->position.z;
+    const stf_real softening_square = attractor->softening * attractor->softening, strength = attractor->strength;
+
     for (size_t i = 0; i < n; i++) {
-        const stf_real inverse = 1 / stf_sqrt(squares[i]);
+        const stf_real dx = x[i] - cx;
+        const stf_real dy = dimensions > 1 ? x[stride + i] - cy : 0;
+        const stf_real dz = dimensions > 2 ? x[2 * stride + i] - cz : 0;
+        const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
+        const stf_real reciprocal = 1 / stf_sqrt(square), inverse = square > 0 ? reciprocal : 0;
         const stf_real pull = strength * inverse * inverse / inverse_mass[i];
-        pulls[i] = squares[i] > 0 && inverse_mass[i] > 0 ? pull : 0;
-        squares[i] = squares[i] > 0 ? inverse : 0;
+        const stf_real factor = inverse_mass[i] > 0 ? pull : 0;
+
+        force[i] -= factor * (dx * inverse);
+        if (dimensions > 1)
+            force[stride + i] -= factor * (dy * inverse);
+        if (dimensions > 2)
+            force[2 * stride + i] -= factor * (dz * inverse);
     }
 }
 
-/* F = -pull d / |d| */
-static void pull(size_t n, stf_real *restrict force, const stf_real *restrict x, const stf_real *restrict pulls,
-                 const stf_real *restrict inverse, stf_real centre)
-{
-    for (size_t i = 0; i < n; i++)
-        force[i] -= pulls[i] * ((x[i] - centre) * inverse[i]);
-}
-
-static void attractor_apply(const void *records, size_t record_count, const stf_particles *particles, double time)
+static void attractor_apply(const void *records, size_t record_count, const stf_particles *p, double time)
 {
     const stf_attractor *attractors = records;
     (void)time;
 
-    for (size_t r = 0; r < record_count; r++) {
-        const stf_vector p = attractors[r].position;
-        const stf_real centre[STF_DIMENSIONS_MAX] = {p.x, p.y, p.z};
-        stf_real inverse[STF_BLOCK_MAX], pulls[STF_BLOCK_MAX];
-
-        softened_squares(particles, centre, attractors[r].softening, inverse);
-        attraction(particles->count, inverse, pulls, particles->inverse_mass, attractors[r].strength);
-        for (unsigned d = 0; d < particles->dimensions; d++)
-            pull(particles->count, particles->force + d * particles->stride,
-                 particles->position + d * particles->stride, pulls, inverse, centre[d]);
-    }
+    for (size_t r = 0; r < record_count; r++)
+        if (p->dimensions == 1)
+            attract(1, p->count, p->stride, p->force, p->position, p->inverse_mass, &attractors[r]);
+        else if (p->dimensions == 2)
+            attract(2, p->count, p->stride, p->force, p->position, p->inverse_mass, &attractors[r]);
+        else
+            attract(3, p->count, p->stride, p->force, p->position, p->inverse_mass, &attractors[r]);
 }
 
 static double attractor_potential(const void *records, size_t record_count, const stf_particles *particles, double time)
@@ -113,7 +100,7 @@ typedef struct source {
  * order of their indices and the loop over the particles that they pull, so that no sum is ever split among lanes of a
  * vector. `dimensions` is a constant at each call, so the compiler makes a loop for each.
  */
-static inline void pull_block(unsigned dimensions, size_t n, size_t stride, stf_real *restrict a,
+STF_INLINE void pull_block(unsigned dimensions, size_t n, size_t stride, stf_real *restrict a,
                               const stf_real *restrict x, const source *restrict from)
 {
     const stf_real sx = from->x[0], sy = from->x[1], sz = from->x[2], strength = from->strength;
@@ -134,26 +121,6 @@ static inline void pull_block(unsigned dimensions, size_t n, size_t stride, stf_
             a[2 * stride + i] -= pull * (dz * inverse);
     }
 }
-
-static void pull_block_1(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
-{
-    pull_block(1, n, stride, a, x, from);
-}
-
-static void pull_block_2(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
-{
-    pull_block(2, n, stride, a, x, from);
-}
-
-static void pull_block_3(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x, const source *from)
-{
-    pull_block(3, n, stride, a, x, from);
-}
-
-typedef void pull_block_function(size_t n, size_t stride, stf_real *restrict a, const stf_real *restrict x,
-                                 const source *from);
-
-static pull_block_function *const pull_block_in[] = {NULL, pull_block_1, pull_block_2, pull_block_3};
 
 /* F = m a, where the particle has a mass. */
 static void add_force(size_t n, stf_real *restrict force, const stf_real *restrict a, const stf_real *restrict inverse_mass)
@@ -179,7 +146,12 @@ static void pull_by_all(const stf_particles *all, size_t first, stf_all_pairs_gr
         from.strength = gravity.gravitational_constant / all->inverse_mass[j];
         for (unsigned d = 0; d < all->dimensions; d++)
             from.x[d] = x[d * stride];
-        pull_block_in[all->dimensions](n, stride, a, all->position + at, &from);
+        if (all->dimensions == 1)
+            pull_block(1, n, stride, a, all->position + at, &from);
+        else if (all->dimensions == 2)
+            pull_block(2, n, stride, a, all->position + at, &from);
+        else
+            pull_block(3, n, stride, a, all->position + at, &from);
     }
     for (unsigned d = 0; d < all->dimensions; d++)
         add_force(n, all->force + at + d * stride, a + d * stride, all->inverse_mass + first);
@@ -191,7 +163,7 @@ static void all_pairs_apply(const void *records, size_t record_count, const stf_
     (void)time;
 
     for (size_t r = 0; r < record_count; r++)
-        for (size_t first = 0; first < all->count; first += all->stride)
+        for (size_t first = all->begin; first < all->end; first += all->stride)
             pull_by_all(all, first, gravity[r]);
 }
 
@@ -234,6 +206,7 @@ const stf_force stf_force_attractor = {
 const stf_force stf_force_all_pairs_gravity = {
     .name = "all_pairs_gravity",
     .kind = STF_LINK,
+    .splits = true,
     .depends_on = STF_ON_POSITION,
     .record_size = sizeof(stf_all_pairs_gravity),
     .apply = all_pairs_apply,

@@ -16,10 +16,13 @@ static inline bool stf_is_spring(stf_real stiffness, stf_real damping, stf_real 
 static inline stf_real stf_spring_factor(stf_real square, stf_real w_dot_d, stf_real stiffness, stf_real damping,
                                      stf_real rest_length)
 {
-    const stf_real length = stf_sqrt(square);
+    const stf_real length = stf_sqrt(square), inverse = 1 / length;
+    const stf_real factor = (stiffness * (length - rest_length) + damping * (w_dot_d * inverse)) * inverse;
 
-    return length > 0 ? (stiffness * (length - rest_length) + damping * (w_dot_d / length)) / length : 0;
+    return length > 0 ? factor : 0;
 }
+
+static inline int stf_compare_reals(stf_real a, stf_real b) { return (a > b) - (a < b); }
 
 /* k (l - l0)^2 / 2, from l^2 */
 static inline double stf_spring_energy(double square, stf_real stiffness, stf_real rest_length)

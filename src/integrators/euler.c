@@ -2,25 +2,33 @@
  * Euler's two methods. Sources: L. Euler, Institutionum calculi integralis (1768), vol. 1, ch. VII;
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), I.1.2 (explicit and symplectic Euler).
  */
-#include "steadfast/integrator.h"
+#include "../flight.h"
 
 /* x(n+1) = x(n) + v(n) dt;  v(n+1) = v(n) + a(n) dt */
-static void explicit_euler(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+static inline void explicit_euler(stf_real *x, stf_real *v, stf_real a, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        x[i] += v[i] * dt;
-        v[i] += a[i] * dt;
-    }
+    *x += *v * dt;
+    *v += a * dt;
 }
 
 /* v(n+1) = v(n) + a(n) dt;  x(n+1) = x(n) + v(n+1) dt */
-static void semi_implicit_euler(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a,
-                                stf_real dt)
+static inline void semi_implicit_euler(stf_real *x, stf_real *v, stf_real a, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        v[i] += a[i] * dt;
-        x[i] += v[i] * dt;
-    }
+    *v += a * dt;
+    *x += *v * dt;
+}
+
+static void explicit_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        explicit_euler(&x[i], &v[i], a[i], dt);
+}
+
+static void semi_implicit_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a,
+                                    stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        semi_implicit_euler(&x[i], &v[i], a[i], dt);
 }
 
 static void explicit_euler_step(stf_system *system, stf_real dt)
@@ -28,20 +36,38 @@ static void explicit_euler_step(stf_system *system, stf_real dt)
     stf_real *a = system->work[0];
 
     system->accelerate(system, system->time, system->position, system->velocity, a);
-    explicit_euler(system->length, system->position, system->velocity, a, dt);
+    explicit_euler_all(system->length, system->position, system->velocity, a, dt);
 }
+
+static inline void explicit_euler_element(stf_element *e, stf_free free, stf_real dt)
+{
+    explicit_euler(&e->x, &e->v, stf_free_acceleration(free, e->v), dt);
+}
+
+static void explicit_euler_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, explicit_euler_element); }
 
 static void semi_implicit_euler_step(stf_system *system, stf_real dt)
 {
     stf_real *a = system->work[0];
 
     system->accelerate(system, system->time, system->position, system->velocity, a);
-    semi_implicit_euler(system->length, system->position, system->velocity, a, dt);
+    semi_implicit_euler_all(system->length, system->position, system->velocity, a, dt);
+}
+
+static inline void semi_implicit_euler_element(stf_element *e, stf_free free, stf_real dt)
+{
+    semi_implicit_euler(&e->x, &e->v, stf_free_acceleration(free, e->v), dt);
+}
+
+static void semi_implicit_euler_flight(const stf_flight *flight, stf_real dt)
+{
+    stf_fly(flight, dt, false, semi_implicit_euler_element);
 }
 
 const stf_integrator stf_explicit_euler = {
     .name = "explicit_euler",
     .step = explicit_euler_step,
+    .step_flight = explicit_euler_flight,
     .order = 1,
     .evaluations = 1,
     .work_arrays = 1,
@@ -52,6 +78,7 @@ const stf_integrator stf_explicit_euler = {
 const stf_integrator stf_semi_implicit_euler = {
     .name = "semi_implicit_euler",
     .step = semi_implicit_euler_step,
+    .step_flight = semi_implicit_euler_flight,
     .order = 1,
     .evaluations = 1,
     .work_arrays = 1,

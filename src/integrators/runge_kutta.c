@@ -4,28 +4,45 @@
  * Sources: W. Kutta, Z. Math. Phys. 46 (1901); K. Heun, Z. Math. Phys. 45 (1900); E. Hairer, S. P. Norsett,
  * G. Wanner, Solving Ordinary Differential Equations I (1993), table II.1.2.
  */
-#include "steadfast/integrator.h"
+#include "../flight.h"
 
 #define HALF ((stf_real)0.5)
 
-/* x = x + v dt;  v = v + a dt, to other arrays */
-static void predict(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, const stf_real *restrict x,
-                    const stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+/* Where a stage takes its slopes. */
+typedef struct stage {
+    stf_real x, v;
+} stage;
+
+/* The stage that lies dt along the slopes: x + slope_x dt;  v + slope_v dt */
+static inline stage advance(stf_real x, stf_real v, stf_real slope_x, stf_real slope_v, stf_real dt)
+{
+    return (stage){.x = x + slope_x * dt, .v = v + slope_v * dt};
+}
+
+static void predict_all(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, const stf_real *restrict x,
+                        const stf_real *restrict v, const stf_real *restrict a, stf_real dt)
 {
     for (size_t i = 0; i < n; i++) {
-        stage_x[i] = x[i] + v[i] * dt;
-        stage_v[i] = v[i] + a[i] * dt;
+        const stage s = advance(x[i], v[i], v[i], a[i], dt);
+        stage_x[i] = s.x;
+        stage_v[i] = s.v;
     }
 }
 
-/* x = x + v2 dt;  v = v + a2 dt, where 2 is the stage at dt / 2 */
-static void midpoint_finish(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
-                            const stf_real *restrict a2, stf_real dt)
+/* ---- midpoint ------------------------------------------------------------------------------------------------------------ */
+
+/* x(n+1) = x(n) + v2 dt;  v(n+1) = v(n) + a2 dt, where 2 is the stage at dt / 2 */
+static inline void midpoint(stf_real *x, stf_real *v, stf_real v2, stf_real a2, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        x[i] += v2[i] * dt;
-        v[i] += a2[i] * dt;
-    }
+    *x += v2 * dt;
+    *v += a2 * dt;
+}
+
+static void midpoint_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
+                         const stf_real *restrict a2, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        midpoint(&x[i], &v[i], v2[i], a2[i], dt);
 }
 
 static void midpoint_step(stf_system *system, stf_real dt)
@@ -35,19 +52,34 @@ static void midpoint_step(stf_system *system, stf_real dt)
     stf_real *a = system->work[0], *stage_x = system->work[1], *stage_v = system->work[2];
 
     system->accelerate(system, system->time, x, v, a);
-    predict(n, stage_x, stage_v, x, v, a, HALF * dt);
+    predict_all(n, stage_x, stage_v, x, v, a, HALF * dt);
     system->accelerate(system, system->time + 0.5 * (double)dt, stage_x, stage_v, a);
-    midpoint_finish(n, x, v, stage_v, a, dt);
+    midpoint_all(n, x, v, stage_v, a, dt);
 }
 
-/* x = x + (v1 + v2) dt / 2;  v = v + (a1 + a2) dt / 2, where 2 is the stage at dt */
-static void improved_euler_finish(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
-                                  const stf_real *restrict a1, const stf_real *restrict a2, stf_real half_dt)
+static inline void midpoint_element(stf_element *e, stf_free free, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        x[i] += (v[i] + v2[i]) * half_dt;
-        v[i] += (a1[i] + a2[i]) * half_dt;
-    }
+    const stage s = advance(e->x, e->v, e->v, stf_free_acceleration(free, e->v), HALF * dt);
+
+    midpoint(&e->x, &e->v, s.v, stf_free_acceleration(free, s.v), dt);
+}
+
+static void midpoint_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, midpoint_element); }
+
+/* ---- improved Euler ------------------------------------------------------------------------------------------------------ */
+
+/* x(n+1) = x(n) + (v1 + v2) dt / 2;  v(n+1) = v(n) + (a1 + a2) dt / 2, where 2 is the stage at dt */
+static inline void improved_euler(stf_real *x, stf_real *v, stf_real v2, stf_real a1, stf_real a2, stf_real dt)
+{
+    *x += (*v + v2) * (HALF * dt);
+    *v += (a1 + a2) * (HALF * dt);
+}
+
+static void improved_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
+                               const stf_real *restrict a1, const stf_real *restrict a2, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        improved_euler(&x[i], &v[i], v2[i], a1[i], a2[i], dt);
 }
 
 static void improved_euler_step(stf_system *system, stf_real dt)
@@ -57,46 +89,75 @@ static void improved_euler_step(stf_system *system, stf_real dt)
     stf_real *a1 = system->work[0], *a2 = system->work[1], *stage_x = system->work[2], *stage_v = system->work[3];
 
     system->accelerate(system, system->time, x, v, a1);
-    predict(n, stage_x, stage_v, x, v, a1, dt);
+    predict_all(n, stage_x, stage_v, x, v, a1, dt);
     system->accelerate(system, system->time + (double)dt, stage_x, stage_v, a2);
-    improved_euler_finish(n, x, v, stage_v, a1, a2, HALF * dt);
+    improved_euler_all(n, x, v, stage_v, a1, a2, dt);
 }
 
-/* The first stage's slopes start the sums. */
-static void rk4_first(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, stf_real *restrict sum_v,
-                      stf_real *restrict sum_a, const stf_real *restrict x, const stf_real *restrict v,
-                      const stf_real *restrict a, stf_real dt)
+static inline void improved_euler_element(stf_element *e, stf_free free, stf_real dt)
+{
+    const stf_real a1 = stf_free_acceleration(free, e->v);
+    const stage s = advance(e->x, e->v, e->v, a1, dt);
+
+    improved_euler(&e->x, &e->v, s.v, a1, stf_free_acceleration(free, s.v), dt);
+}
+
+static void improved_euler_flight(const stf_flight *flight, stf_real dt)
+{
+    stf_fly(flight, dt, false, improved_euler_element);
+}
+
+/* ---- RK4 ----------------------------------------------------------------------------------------------------------------- */
+
+/* What the four stages add up to: v1 + 2 v2 + 2 v3 + v4, and the accelerations likewise. */
+typedef struct sums {
+    stf_real v, a;
+} sums;
+
+/* Stages 2 and 3 count twice. */
+static inline sums add_middle(sums sum, stf_real v, stf_real a) { return (sums){.v = sum.v + 2 * v, .a = sum.a + 2 * a}; }
+
+/* x(n+1) = x(n) + dt sum / 6, v likewise. (dt sum) / 6, as a rounded dt / 6 would bias every step. */
+static inline void rk4(stf_real *x, stf_real *v, sums sum, stf_real v4, stf_real a4, stf_real dt)
+{
+    *x += dt * (sum.v + v4) / 6;
+    *v += dt * (sum.a + a4) / 6;
+}
+
+/* The first stage's slopes start the sums, and the second stage starts from x and v along them. */
+static void rk4_first_all(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, stf_real *restrict sum_v,
+                          stf_real *restrict sum_a, const stf_real *restrict x, const stf_real *restrict v,
+                          const stf_real *restrict a, stf_real dt)
 {
     for (size_t i = 0; i < n; i++) {
+        const stage next = advance(x[i], v[i], v[i], a[i], dt);
         sum_v[i] = v[i];
         sum_a[i] = a[i];
-        stage_x[i] = x[i] + v[i] * dt;
-        stage_v[i] = v[i] + a[i] * dt;
+        stage_x[i] = next.x;
+        stage_v[i] = next.v;
     }
 }
 
-/* Stages 2 and 3 count twice; the next stage starts from x and v along this one's slopes. */
-static void rk4_middle(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, stf_real *restrict sum_v,
-                       stf_real *restrict sum_a, const stf_real *restrict x, const stf_real *restrict v,
-                       const stf_real *restrict a, stf_real dt)
+/* From a middle stage to the next one: from x and v of the step along this stage's slopes. */
+static void rk4_middle_all(size_t n, stf_real *restrict stage_x, stf_real *restrict stage_v, stf_real *restrict sum_v,
+                           stf_real *restrict sum_a, const stf_real *restrict x, const stf_real *restrict v,
+                           const stf_real *restrict a, stf_real dt)
 {
     for (size_t i = 0; i < n; i++) {
-        sum_v[i] += 2 * stage_v[i];
-        sum_a[i] += 2 * a[i];
-        stage_x[i] = x[i] + stage_v[i] * dt;
-        stage_v[i] = v[i] + a[i] * dt;
+        const sums sum = add_middle((sums){.v = sum_v[i], .a = sum_a[i]}, stage_v[i], a[i]);
+        const stage next = advance(x[i], v[i], stage_v[i], a[i], dt);
+        stage_x[i] = next.x;
+        stage_v[i] = next.v;
+        sum_v[i] = sum.v;
+        sum_a[i] = sum.a;
     }
 }
 
-/* x = x + dt (v1 + 2 v2 + 2 v3 + v4) / 6, v likewise. (dt sum) / 6, as a rounded dt / 6 would bias every step. */
-static void rk4_finish(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict sum_v,
-                       const stf_real *restrict sum_a, const stf_real *restrict v4, const stf_real *restrict a4,
-                       stf_real dt)
+static void rk4_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict sum_v,
+                    const stf_real *restrict sum_a, const stf_real *restrict v4, const stf_real *restrict a4, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        x[i] += dt * (sum_v[i] + v4[i]) / 6;
-        v[i] += dt * (sum_a[i] + a4[i]) / 6;
-    }
+    for (size_t i = 0; i < n; i++)
+        rk4(&x[i], &v[i], (sums){.v = sum_v[i], .a = sum_a[i]}, v4[i], a4[i], dt);
 }
 
 static void rk4_step(stf_system *system, stf_real dt)
@@ -108,19 +169,37 @@ static void rk4_step(stf_system *system, stf_real dt)
     stf_real *sum_v = system->work[3], *sum_a = system->work[4];
 
     system->accelerate(system, t, x, v, a);
-    rk4_first(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
+    rk4_first_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
     system->accelerate(system, t_half, stage_x, stage_v, a);
-    rk4_middle(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
+    rk4_middle_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
     system->accelerate(system, t_half, stage_x, stage_v, a);
-    rk4_middle(n, stage_x, stage_v, sum_v, sum_a, x, v, a, dt);
+    rk4_middle_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, dt);
     system->accelerate(system, t_full, stage_x, stage_v, a);
-    rk4_finish(n, x, v, sum_v, sum_a, stage_v, a, dt);
+    rk4_all(n, x, v, sum_v, sum_a, stage_v, a, dt);
 }
+
+static inline void rk4_element(stf_element *e, stf_free free, stf_real dt)
+{
+    const stf_real a1 = stf_free_acceleration(free, e->v);
+    const stage two = advance(e->x, e->v, e->v, a1, HALF * dt);
+    const stf_real a2 = stf_free_acceleration(free, two.v);
+    const stage three = advance(e->x, e->v, two.v, a2, HALF * dt);
+    const stf_real a3 = stf_free_acceleration(free, three.v);
+    const stage four = advance(e->x, e->v, three.v, a3, dt);
+    const sums sum = add_middle(add_middle((sums){.v = e->v, .a = a1}, two.v, a2), three.v, a3);
+
+    rk4(&e->x, &e->v, sum, four.v, stf_free_acceleration(free, four.v), dt);
+}
+
+static void rk4_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, rk4_element); }
+
+/* ---- descriptors ---------------------------------------------------------------------------------------------------------- */
 
 /* Both methods of order 2 have the stability function 1 + z + z^2 / 2: |R| > 1 on all of the imaginary axis. */
 const stf_integrator stf_midpoint = {
     .name = "midpoint",
     .step = midpoint_step,
+    .step_flight = midpoint_flight,
     .order = 2,
     .evaluations = 2,
     .work_arrays = 3,
@@ -131,6 +210,7 @@ const stf_integrator stf_midpoint = {
 const stf_integrator stf_improved_euler = {
     .name = "improved_euler",
     .step = improved_euler_step,
+    .step_flight = improved_euler_flight,
     .order = 2,
     .evaluations = 2,
     .work_arrays = 4,
@@ -142,6 +222,7 @@ const stf_integrator stf_improved_euler = {
 const stf_integrator stf_rk4 = {
     .name = "rk4",
     .step = rk4_step,
+    .step_flight = rk4_flight,
     .order = 4,
     .evaluations = 4,
     .work_arrays = 5,

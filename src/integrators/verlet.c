@@ -7,7 +7,7 @@
  * prediction is off by O(dt^2), so that both stay of second order when forces depend on velocity. For pure drag the
  * recursion is then that of the two-step Adams-Bashforth method, whose limit is k dt = 1.
  */
-#include "steadfast/integrator.h"
+#include "../flight.h"
 
 #define HALF ((stf_real)0.5)
 
@@ -16,24 +16,33 @@
  * d is kept, never computed as a difference of positions.
  * v(n+1) = d(n+1) / dt + a(n) dt / 2: the difference is the velocity half a step ago.
  */
-static void position_verlet(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict d,
-                            const stf_real *restrict a, stf_real dt)
+static inline void position_verlet(stf_real *x, stf_real *v, stf_real *d, stf_real a, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        d[i] += a[i] * dt * dt;
-        x[i] += d[i];
-        v[i] = d[i] / dt + a[i] * (HALF * dt);
-    }
+    *d += a * dt * dt;
+    *x += *d;
+    *v = *d / dt + a * (HALF * dt);
 }
 
 /* The difference that led here, from the Taylor series, where there is none: d(n) = v(n) dt - a(n) dt^2 / 2. */
-static void position_verlet_start(size_t n, stf_real *restrict d, const stf_real *restrict v, const stf_real *restrict a,
-                                  stf_real dt)
+static inline stf_real position_verlet_start(stf_real d, stf_real v, stf_real a, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        const stf_real start = (v[i] - a[i] * (HALF * dt)) * dt;
-        d[i] = d[i] == d[i] ? d[i] : start;
-    }
+    const stf_real start = (v - a * (HALF * dt)) * dt;
+
+    return d == d ? d : start;
+}
+
+static void position_verlet_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict d,
+                                const stf_real *restrict a, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        position_verlet(&x[i], &v[i], &d[i], a[i], dt);
+}
+
+static void position_verlet_start_all(size_t n, stf_real *restrict d, const stf_real *restrict v,
+                                      const stf_real *restrict a, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        d[i] = position_verlet_start(d[i], v[i], a[i], dt);
 }
 
 static void position_verlet_step(stf_system *system, stf_real dt)
@@ -43,27 +52,51 @@ static void position_verlet_step(stf_system *system, stf_real dt)
 
     system->accelerate(system, system->time, x, v, a);
     if (system->history_stale)
-        position_verlet_start(n, d, v, a, dt);
-    position_verlet(n, x, v, d, a, dt);
+        position_verlet_start_all(n, d, v, a, dt);
+    position_verlet_all(n, x, v, d, a, dt);
 }
 
-/* v(n+1/2) = v(n) + a(n) dt / 2;  x(n+1) = x(n) + v(n+1/2) dt;  predicted v(n+1) = v(n+1/2) + a(n) dt / 2 */
-static void velocity_verlet_first(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict predicted_v,
-                                  const stf_real *restrict a, stf_real dt)
+static inline void position_verlet_element_start(stf_element *e, stf_free free, stf_real dt)
 {
-    for (size_t i = 0; i < n; i++) {
-        const stf_real kick = a[i] * (HALF * dt);
-        v[i] += kick;
-        x[i] += v[i] * dt;
-        predicted_v[i] = v[i] + kick;
-    }
+    e->history = position_verlet_start(e->history, e->v, stf_free_acceleration(free, e->v), dt);
+}
+
+static inline void position_verlet_element(stf_element *e, stf_free free, stf_real dt)
+{
+    position_verlet(&e->x, &e->v, &e->history, stf_free_acceleration(free, e->v), dt);
+}
+
+static void position_verlet_flight(const stf_flight *flight, stf_real dt)
+{
+    if (flight->history_stale)
+        stf_fly(flight, dt, true, position_verlet_element_start);
+    stf_fly(flight, dt, true, position_verlet_element);
+}
+
+/* v(n+1/2) = v(n) + a(n) dt / 2;  x(n+1) = x(n) + v(n+1/2) dt;  returns the predicted v(n+1) = v(n+1/2) + a(n) dt / 2 */
+static inline stf_real velocity_verlet_first(stf_real *x, stf_real *v, stf_real a, stf_real dt)
+{
+    const stf_real kick = a * (HALF * dt);
+
+    *v += kick;
+    *x += *v * dt;
+    return *v + kick;
 }
 
 /* v(n+1) = v(n+1/2) + a(n+1) dt / 2 */
-static void velocity_verlet_second(size_t n, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+static inline void velocity_verlet_second(stf_real *v, stf_real a, stf_real dt) { *v += a * (HALF * dt); }
+
+static void velocity_verlet_first_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict predicted_v,
+                                      const stf_real *restrict a, stf_real dt)
 {
     for (size_t i = 0; i < n; i++)
-        v[i] += a[i] * (HALF * dt);
+        predicted_v[i] = velocity_verlet_first(&x[i], &v[i], a[i], dt);
+}
+
+static void velocity_verlet_second_all(size_t n, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+{
+    for (size_t i = 0; i < n; i++)
+        velocity_verlet_second(&v[i], a[i], dt);
 }
 
 static void velocity_verlet_step(stf_system *system, stf_real dt)
@@ -73,14 +106,36 @@ static void velocity_verlet_step(stf_system *system, stf_real dt)
 
     if (system->history_stale)
         system->accelerate(system, system->time, x, v, a);
-    velocity_verlet_first(n, x, v, predicted_v, a, dt);
+    velocity_verlet_first_all(n, x, v, predicted_v, a, dt);
     system->accelerate(system, system->time + (double)dt, x, predicted_v, a);
-    velocity_verlet_second(n, v, a, dt);
+    velocity_verlet_second_all(n, v, a, dt);
+}
+
+static inline void velocity_verlet_element_start(stf_element *e, stf_free free, stf_real dt)
+{
+    (void)dt;
+    e->history = stf_free_acceleration(free, e->v);
+}
+
+static inline void velocity_verlet_element(stf_element *e, stf_free free, stf_real dt)
+{
+    const stf_real predicted_v = velocity_verlet_first(&e->x, &e->v, e->history, dt);
+
+    e->history = stf_free_acceleration(free, predicted_v);
+    velocity_verlet_second(&e->v, e->history, dt);
+}
+
+static void velocity_verlet_flight(const stf_flight *flight, stf_real dt)
+{
+    if (flight->history_stale)
+        stf_fly(flight, dt, true, velocity_verlet_element_start);
+    stf_fly(flight, dt, true, velocity_verlet_element);
 }
 
 const stf_integrator stf_position_verlet = {
     .name = "position_verlet",
     .step = position_verlet_step,
+    .step_flight = position_verlet_flight,
     .order = 2,
     .evaluations = 1,
     .work_arrays = 1,
@@ -93,6 +148,7 @@ const stf_integrator stf_position_verlet = {
 const stf_integrator stf_velocity_verlet = {
     .name = "velocity_verlet",
     .step = velocity_verlet_step,
+    .step_flight = velocity_verlet_flight,
     .order = 2,
     .evaluations = 1,
     .work_arrays = 1,

@@ -24,9 +24,9 @@ static stf_result check_gravity(stf_vector gravity, unsigned dimensions)
 
 static void put_gravity(stf_world *world, stf_vector gravity)
 {
-    world->gravity[0] = gravity.x;
-    world->gravity[1] = gravity.y;
-    world->gravity[2] = gravity.z;
+    world->gravity[0] = gravity.x + 0; /* -0 becomes 0: then it does not matter which loop adds it */
+    world->gravity[1] = gravity.y + 0;
+    world->gravity[2] = gravity.z + 0;
 }
 
 /* The def with its zeros replaced by what they stand for. */
@@ -67,6 +67,8 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
 
     if (bad)
         return bad;
+    if (def.parallel.tasks > 1 && !def.parallel.run)
+        return STF_ERROR_DESCRIPTOR;
     if (!stf_allocator_complete(def.allocator, &allocator))
         return STF_ERROR_DESCRIPTOR;
 
@@ -75,6 +77,8 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
         return STF_ERROR_MEMORY;
     *made = (stf_world){
         .allocator = allocator,
+        .parallel = def.parallel,
+        .kernels = stf_kernels_choose(),
         .integrator = def.integrator,
         .dimensions = def.dimensions,
         .substeps = def.substeps,
@@ -83,6 +87,7 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
         .step = def.step,
         .history_stale = true,
     };
+    made->stepper = stf_kernels_integrator(made->kernels, def.integrator);
     put_gravity(made, def.gravity);
 
     const stf_result no_room = stf_storage_require(made, def.capacity, def.integrator, false);
@@ -122,6 +127,7 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
         stf_world_forget_history(world, 0, world->count);
     }
     world->integrator = integrator;
+    world->stepper = stf_kernels_integrator(world->kernels, integrator);
     return STF_OK;
 }
 
@@ -173,6 +179,7 @@ stf_result stf_world_set_substeps(stf_world *world, unsigned substeps)
     return STF_OK;
 }
 
+const char *stf_world_isa(const stf_world *world) { return world ? world->kernels->name : NULL; }
 const stf_integrator *stf_world_integrator(const stf_world *world) { return world ? world->integrator : NULL; }
 unsigned stf_world_dimensions(const stf_world *world) { return world ? world->dimensions : 0; }
 unsigned stf_world_substeps(const stf_world *world) { return world ? world->substeps : 0; }

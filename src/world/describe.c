@@ -46,10 +46,14 @@ static void append_head(text *t, const stf_world *world)
     append(t, "tick of %.6g s: %u step%s of %s (order %d, %d evaluation%s)\n", world->step, world->substeps,
            plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
            plural((unsigned long long)integrator->evaluations));
-    if (!stf_world_is_tied(world))
-        append(t, "block by block: every pass runs in cache, memory is read and written once a tick\n");
-    else
+    append(t, "loops compiled for %s; at most %u part%s at a time\n", world->kernels->name,
+           world->parallel.run ? world->parallel.tasks : 1, plural(world->parallel.run ? world->parallel.tasks : 1));
+    if (stf_world_is_tied(world))
         append(t, "links tie particles together: every pass runs over the whole world\n");
+    else if (stf_world_is_free(world) && world->stepper->step_flight)
+        append(t, "free flight: one pass a step, memory is read and written once a tick\n");
+    else
+        append(t, "block by block: every pass runs in cache, memory is read and written once a tick\n");
 }
 
 static void append_state(text *t, const stf_world *world)
@@ -66,13 +70,14 @@ static void append_state(text *t, const stf_world *world)
     if (world->keep_radius)
         append_row(t, "radius", 0, real, "");
     append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
-    append_row(t, "gravity", 0, 0, "part of the integrator's passes, with every force's F / m");
+    append_row(t, "gravity, linear drag", 0, 0, "part of the integrator's passes, with every force's F / m");
 }
 
 static void append_force(text *t, const stf_world *world, const stf_added_force *added)
 {
     const stf_force *force = added->force;
-    const unsigned long long passes = stf_force_acts(added) ? (unsigned long long)world->integrator->evaluations : 0;
+    const unsigned long long evaluations = (unsigned long long)world->integrator->evaluations;
+    const unsigned long long passes = stf_force_acts(added) && force->apply ? evaluations : 0;
     const double bytes = world->count ? (double)(added->record_count * force->record_size) / (double)world->count : 0;
     char remark[96];
 

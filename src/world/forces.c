@@ -6,7 +6,7 @@
 
 static bool is_force(const stf_force *force)
 {
-    return force->name && force->apply && (force->kind == STF_FIELD || force->kind == STF_LINK);
+    return force->name && !force->apply != !force->drag && (force->kind == STF_FIELD || force->kind == STF_LINK);
 }
 
 static stf_result check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count)
@@ -31,24 +31,31 @@ static void arrange_records(stf_added_force *added, size_t record_count)
         added->force->arrange(added->records, record_count);
 }
 
+/* Bytes for so many records and what is arranged behind them; 0 if that is no size_t. */
+static size_t bytes_of(const stf_force *force, size_t record_count)
+{
+    const size_t arranged = force->arranged_size ? force->arranged_size(record_count) : 0;
+    const size_t most = SIZE_MAX / 2;
+
+    if (record_count > (most - STF_ALIGNMENT) / force->record_size || arranged > most)
+        return 0;
+    return (record_count * force->record_size + STF_ALIGNMENT - 1) / STF_ALIGNMENT * STF_ALIGNMENT + arranged;
+}
+
 /* Fills in `added`'s own copy of the records, in the order that the force wants. */
 static stf_result copy_records(const stf_world *world, stf_added_force *added, const void *records, size_t record_count)
 {
-    const size_t size = added->force->record_size;
-
     added->records = NULL;
     added->record_count = record_count;
     added->bytes = 0;
     if (record_count == 0)
         return STF_OK;
-    if (record_count > SIZE_MAX / size)
-        return STF_ERROR_MEMORY;
 
-    added->bytes = record_count * size;
-    added->records = stf_allocator_allocate(&world->allocator, added->bytes);
+    added->bytes = bytes_of(added->force, record_count);
+    added->records = added->bytes ? stf_allocator_allocate(&world->allocator, added->bytes) : NULL;
     if (!added->records)
         return STF_ERROR_MEMORY;
-    memcpy(added->records, records, added->bytes);
+    memcpy(added->records, records, record_count * added->force->record_size);
     arrange_records(added, record_count);
     return STF_OK;
 }
@@ -92,7 +99,7 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
     if (!is_force(force))
         return STF_ERROR_DESCRIPTOR;
 
-    stf_added_force added = {.force = force};
+    stf_added_force added = {.force = force, .acting = stf_kernels_force(world->kernels, force)};
     stf_result bad = check_records(world, force, records, record_count);
 
     if (!bad)
@@ -130,7 +137,8 @@ stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *re
     stf_result bad = check_records(world, added->force, records, record_count);
     if (bad)
         return bad;
-    if (record_count > 0 && record_count <= added->bytes / added->force->record_size) {
+    const size_t bytes = record_count > 0 ? bytes_of(added->force, record_count) : 0;
+    if (bytes > 0 && bytes <= added->bytes) {
         memmove(added->records, records, record_count * added->force->record_size); /* they may be the world's own */
         arrange_records(added, record_count);
     } else {

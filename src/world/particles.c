@@ -56,6 +56,57 @@ static void put_previous(stf_world *world, size_t index, stf_vector position)
         put_vector(world, world->storage.previous, index, position);
 }
 
+/* New particles, all in one block: row by row, as a particle at a time is several times slower. */
+static void put_lanes(stf_world *world, size_t first, size_t n, const stf_particle *particles)
+{
+    const stf_storage *storage = &world->storage;
+    const size_t stride = storage->stride, at = stf_world_offset(world, first);
+    const unsigned dimensions = world->dimensions;
+
+    if ((first & (stride - 1)) == 0)
+        stf_storage_open_block(world, first >> storage->shift);
+    for (size_t i = 0; i < n; i++) {
+        const stf_vector x = particles[i].position, v = particles[i].velocity;
+
+        storage->position[at + i] = x.x;
+        storage->velocity[at + i] = v.x;
+        if (dimensions > 1) {
+            storage->position[at + stride + i] = x.y;
+            storage->velocity[at + stride + i] = v.y;
+        }
+        if (dimensions > 2) {
+            storage->position[at + 2 * stride + i] = x.z;
+            storage->velocity[at + 2 * stride + i] = v.z;
+        }
+        storage->inverse_mass[first + i] = particles[i].inverse_mass;
+    }
+    for (size_t i = 0; i < n && storage->radius; i++)
+        storage->radius[first + i] = particles[i].radius;
+    for (unsigned d = 0; d < dimensions && storage->previous; d++)
+        memcpy(storage->previous + at + d * stride, storage->position + at + d * stride, n * sizeof(stf_real));
+}
+
+static stf_result check_lanes(const stf_world *world, size_t n, const stf_particle *particles)
+{
+    for (size_t i = 0; i < n; i++) {
+        const stf_result bad = check_particle(world, &particles[i]);
+        if (bad)
+            return bad;
+    }
+    return STF_OK;
+}
+
+/* What put_lanes wrote is taken back in the block that stays in use. */
+static void clear_lanes_from(stf_world *world, size_t first)
+{
+    const stf_particle none = {.inverse_mass = 0};
+
+    for (size_t i = first; (i & (world->storage.stride - 1)) != 0; i++) {
+        put_particle(world, i, &none);
+        put_previous(world, i, none.position);
+    }
+}
+
 static void move_vector(const stf_world *world, stf_real *array, size_t from, size_t to)
 {
     put_vector(world, array, to, get_vector(world, array, from));
@@ -80,11 +131,6 @@ stf_result stf_world_add_many(stf_world *world, const stf_particle *particles, s
 {
     if (!world || (!particles && count > 0))
         return STF_ERROR_NULL;
-    for (size_t i = 0; i < count; i++) {
-        const stf_result bad = check_particle(world, &particles[i]);
-        if (bad)
-            return bad;
-    }
     if (count > SIZE_MAX - world->count)
         return STF_ERROR_MEMORY;
 
@@ -92,14 +138,19 @@ stf_result stf_world_add_many(stf_world *world, const stf_particle *particles, s
     if (no_room)
         return no_room;
 
-    if (first)
-        *first = world->count;
-    for (size_t i = 0; i < count; i++) {
-        put_particle(world, world->count + i, &particles[i]);
-        put_previous(world, world->count + i, particles[i].position);
+    for (size_t done = 0, n; done < count; done += n) {
+        n = stf_world_lanes(world, world->count + done, count - done);
+        const stf_result bad = check_lanes(world, n, particles + done);
+        if (bad) {
+            clear_lanes_from(world, world->count);
+            return bad;
+        }
+        put_lanes(world, world->count + done, n, particles + done);
     }
     if (count > 0)
         stf_world_forget_history(world, world->count, count);
+    if (first)
+        *first = world->count;
     world->count += count;
     return STF_OK;
 }

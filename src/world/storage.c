@@ -20,7 +20,8 @@ static stf_real *take(stf_storage *storage, size_t reals)
 static void lay_out(stf_storage *storage, const stf_world *world)
 {
     const size_t vectors = storage->capacity * world->dimensions;
-    const size_t work = storage->whole ? vectors : storage->stride * world->dimensions;
+    const size_t parts = stf_world_parts(world, storage->capacity / storage->stride);
+    const size_t work = storage->whole ? vectors : parts * storage->stride * world->dimensions;
 
     storage->bytes = 0;
     storage->position = take(storage, vectors);
@@ -74,6 +75,31 @@ static void choose_blocks(stf_storage *storage, size_t capacity)
         storage->capacity = storage->stride;
 }
 
+/* All blocks that have particles, in an array of `rows` components a block. */
+static void clear_array(stf_real *array, const stf_storage *storage, size_t rows, size_t count)
+{
+    const size_t blocks = (count + storage->stride - 1) >> storage->shift;
+
+    memset(array, 0, blocks * storage->stride * rows * sizeof(stf_real));
+}
+
+static void open_block(const stf_storage *storage, size_t dimensions, size_t block)
+{
+    const size_t row = storage->stride, vectors = row * dimensions, bytes = sizeof(stf_real);
+
+    memset(storage->position + block * vectors, 0, vectors * bytes);
+    memset(storage->velocity + block * vectors, 0, vectors * bytes);
+    memset(storage->inverse_mass + block * row, 0, row * bytes);
+    if (storage->previous)
+        memset(storage->previous + block * vectors, 0, vectors * bytes);
+    if (storage->radius)
+        memset(storage->radius + block * row, 0, row * bytes);
+    for (int k = 0; k < storage->history_arrays; k++)
+        memset(storage->history[k] + block * vectors, 0, vectors * bytes);
+}
+
+void stf_storage_open_block(const stf_world *world, size_t block) { open_block(&world->storage, world->dimensions, block); }
+
 static int larger(int a, int b) { return a > b ? a : b; }
 
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole)
@@ -95,9 +121,12 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
     if (!new.memory)
         return STF_ERROR_MEMORY;
 
-    memset(new.memory, 0, new.bytes);
     lay_out(&new, world);
+    for (size_t b = 0; b << new.shift < world->count && new.stride != old->stride; b++)
+        open_block(&new, world->dimensions, b);
     copy_storage(&new, old, world->dimensions, world->count);
+    for (int k = old->history_arrays; k < new.history_arrays; k++)
+        clear_array(new.history[k], &new, world->dimensions, world->count);
     stf_storage_release(world);
     world->storage = new;
     return STF_OK;
@@ -114,7 +143,13 @@ void stf_world_clear_history(stf_world *world)
     const stf_storage *storage = &world->storage;
 
     for (int k = 0; k < storage->history_arrays; k++)
-        memset(storage->history[k], 0, storage->capacity * world->dimensions * sizeof(stf_real));
+        clear_array(storage->history[k], storage, world->dimensions, world->count);
+}
+
+static void fill(stf_real *row, size_t n, stf_real value)
+{
+    for (size_t i = 0; i < n; i++)
+        row[i] = value;
 }
 
 void stf_world_forget_history(stf_world *world, size_t first, size_t count)
@@ -122,9 +157,11 @@ void stf_world_forget_history(stf_world *world, size_t first, size_t count)
     const stf_storage *storage = &world->storage;
 
     for (int k = 0; k < storage->history_arrays; k++)
-        for (size_t i = first; i < first + count; i++)
+        for (size_t i = first, n; i < first + count; i += n) {
+            n = stf_world_lanes(world, i, first + count - i);
             for (unsigned d = 0; d < world->dimensions; d++)
-                storage->history[k][stf_world_offset(world, i) + d * storage->stride] = (stf_real)NAN;
+                fill(storage->history[k] + stf_world_offset(world, i) + d * storage->stride, n, (stf_real)NAN);
+        }
     world->history_stale = true;
 }
 
@@ -142,6 +179,7 @@ stf_particles stf_world_particles(const stf_world *world, size_t first_block, si
         .dimensions = world->dimensions,
         .position = position,
         .velocity = velocity,
+        .end = left < blocks * stride ? left : blocks * stride,
         .inverse_mass = world->storage.inverse_mass + first,
         .force = force,
     };

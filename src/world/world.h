@@ -3,7 +3,7 @@
 #define STEADFAST_SRC_WORLD_H
 
 #include "../allocator.h"
-#include "../real.h"
+#include "../kernels.h"
 #include "steadfast/world.h"
 
 /* Names of these functions for the second precision; the public ones are in precision.h. */
@@ -11,6 +11,13 @@
 #define stf_storage_require stf_storage_require_f64
 #define stf_world_clear_history stf_world_clear_history_f64
 #define stf_world_forget_history stf_world_forget_history_f64
+#define stf_world_is_tied stf_world_is_tied_f64
+#define stf_world_is_free stf_world_is_free_f64
+#define stf_world_drag stf_world_drag_f64
+#define stf_world_flight stf_world_flight_f64
+#define stf_range_of stf_range_of_f64
+#define stf_range_next stf_range_next_f64
+#define stf_storage_open_block stf_storage_open_block_f64
 #define stf_storage_release stf_storage_release_f64
 #define stf_world_particles stf_world_particles_f64
 #define stf_world_renumber_forces stf_world_renumber_forces_f64
@@ -18,14 +25,15 @@
 #define stf_world_release_forces stf_world_release_forces_f64
 #endif
 
-/* All arrays of a world, in one piece of memory. Lanes that hold no particle have position, velocity and inverse mass 0. */
+/* All arrays of a world, in one piece of memory. Blocks that hold particles have position, velocity and
+   inverse mass 0 in the lanes that hold none; blocks behind them are not written before they are opened. */
 typedef struct stf_storage {
     void *memory;
     size_t bytes;
     size_t capacity; /* particles: a whole number of blocks */
     size_t stride;   /* particles a block, a power of two */
     unsigned shift;  /* stride == 1 << shift */
-    bool whole;      /* work arrays are as large as the world, else as one block */
+    bool whole;      /* work arrays are as large as the world, else as one block for each part of a step */
     int history_arrays, work_arrays;
     stf_real *position, *velocity, *previous;         /* [capacity * dimensions], in blocks; previous NULL if not kept */
     stf_real *inverse_mass, *radius;                  /* [capacity]; radius NULL if not kept */
@@ -35,7 +43,7 @@ typedef struct stf_storage {
 
 /* A force of a world. */
 typedef struct stf_added_force {
-    const stf_force *force;
+    const stf_force *force, *acting; /* as given, and as this machine runs it fastest */
     stf_force_id id;
     void *records;
     size_t record_count;
@@ -44,7 +52,9 @@ typedef struct stf_added_force {
 
 struct stf_world {
     stf_allocator allocator;
-    const stf_integrator *integrator;
+    stf_parallel parallel;
+    const stf_kernels *kernels;
+    const stf_integrator *integrator, *stepper; /* as given, and as this machine runs it fastest */
     unsigned dimensions, substeps;
     bool keep_previous, keep_radius;
     double step; /* s */
@@ -68,6 +78,9 @@ struct stf_world {
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole);
 void stf_storage_release(stf_world *world);
 
+/* Sets a block to 0 that gets its first particle: memory that is never used is never touched. */
+void stf_storage_open_block(const stf_world *world, size_t block);
+
 static inline size_t stf_world_blocks(const stf_world *world)
 {
     return (world->count + world->storage.stride - 1) >> world->storage.shift;
@@ -76,7 +89,7 @@ static inline size_t stf_world_blocks(const stf_world *world)
 /* Reals of a block in an array of vectors. */
 static inline size_t stf_world_block_length(const stf_world *world) { return world->storage.stride * world->dimensions; }
 
-/* Sets all history to 0, that of no particle too: another integrator may have left there what it liked. */
+/* Sets all history to 0, in lanes of no particle too: another integrator may have left there what it liked. */
 void stf_world_clear_history(stf_world *world);
 
 /* Marks the history of `count` particles from `first` as none: NaN in every component. */
@@ -88,23 +101,63 @@ static inline size_t stf_world_offset(const stf_world *world, size_t i)
     return (i >> world->storage.shift) * stf_world_block_length(world) + (i & (world->storage.stride - 1));
 }
 
+/* How many of `count` particles from i on stand in its block. */
+static inline size_t stf_world_lanes(const stf_world *world, size_t i, size_t count)
+{
+    const size_t lanes = world->storage.stride - (i & (world->storage.stride - 1));
+
+    return count < lanes ? count : lanes;
+}
+
 /* What a force sees of the blocks from first_block, their state in arrays that start with that block. */
 stf_particles stf_world_particles(const stf_world *world, size_t first_block, size_t blocks, const stf_real *position,
                                   const stf_real *velocity, stf_real *force);
 
-/* A force whose records are still to come, or all gone, is not called. */
+/* A force whose records are still to come, or all gone, does not act. */
 static inline bool stf_force_acts(const stf_added_force *added)
 {
     return added->force->record_size == 0 || added->record_count > 0;
 }
 
 /* Whether a link force ties particles together, so that all of them have to step at once. */
-static inline bool stf_world_is_tied(const stf_world *world)
+bool stf_world_is_tied(const stf_world *world);
+
+/* Whether nothing acts but gravity and linear drag. */
+bool stf_world_is_free(const stf_world *world);
+
+/* The k of all linear drag. */
+stf_real stf_world_drag(const stf_world *world);
+
+/* These blocks' masses, gravity and drag; position, velocity and history are still to be set. */
+stf_flight stf_world_flight(const stf_world *world, size_t first_block, size_t blocks, stf_real drag);
+
+/* What one step of the integrator advances: one block where nothing ties particles together, else all of them. */
+typedef struct stf_range {
+    stf_system system; /* first, so that accelerate finds the range that its system is part of */
+    const stf_world *world;
+    size_t first_block, blocks;
+    stf_real drag;
+} stf_range;
+
+/* The range of these blocks, with the scratch of this part of the step, and the range that follows it. */
+stf_range stf_range_of(const stf_world *world, size_t first_block, size_t blocks, unsigned part, stf_real drag);
+void stf_range_next(stf_range *range);
+
+/* Into how many parts work is split that has `most` of them. */
+static inline unsigned stf_world_parts(const stf_world *world, size_t most)
 {
-    for (size_t i = 0; i < world->force_count; i++)
-        if (world->forces[i].force->kind == STF_LINK && stf_force_acts(&world->forces[i]))
-            return true;
-    return false;
+    const unsigned tasks = world->parallel.run ? world->parallel.tasks : 1;
+
+    return most < 2 || tasks < 2 ? 1 : most < tasks ? (unsigned)most : tasks;
+}
+
+/* Calls task(context, part) for every part, on the engine's threads if there are several. */
+static inline void stf_world_run(const stf_world *world, unsigned parts, void (*task)(void *, unsigned), void *context)
+{
+    if (parts == 1)
+        task(context, 0);
+    else
+        world->parallel.run(world->parallel.user, parts, task, context);
 }
 
 /* Particle `removed` is gone, particle `last` has its index. */

@@ -115,9 +115,18 @@ static void print_summary(const run *r)
 static bool check_all(void)
 {
     static const bench_scene scenes[] = {
-        {FREE, REFERENCE, "semi_implicit_euler", 777}, {FREE, REFERENCE, "velocity_verlet", 777}, {FREE, REFERENCE, "rk4", 777},
-        {FIELD, REFERENCE, "rk4", 777},                {CLOTH, REFERENCE, NULL, 23 * 23},         {CLOTH, EDGES, NULL, 23 * 23},
-        {GRAPH, EDGES, NULL, 777},                     {GRAPH, EDGES_SORTED, NULL, 777},          {PAIRS, REFERENCE, NULL, 777},
+        {FREE, REFERENCE, "semi_implicit_euler", 777},
+        {FREE, REFERENCE, "velocity_verlet", 777},
+        {FREE, REFERENCE, "rk4", 777},
+        {FIELD, REFERENCE, "rk4", 777},
+        {CLOTH, REFERENCE, NULL, 23 * 23},
+        {CLOTH, EDGES, NULL, 23 * 23},
+        {GRAPH, EDGES, NULL, 777},
+        {GRAPH, EDGES_SORTED, NULL, 777},
+        {PAIRS, REFERENCE, NULL, 777},
+        {FREE, LIBRARY_THREADS, "rk4", 7777},
+        {CLOTH, LIBRARY_THREADS, NULL, 64 * 64},
+        {PAIRS, LIBRARY_THREADS, NULL, 777},
     };
     const bench_precision *const precisions[] = {&bench_float, &bench_double};
     bool same = true;
@@ -140,9 +149,13 @@ static int measure_all(run *r)
     }
     bench_print_header(stdout, measure_pin());
     bench_groups(r->options.quick, take_group, r);
-    print_summary(r);
     if (r->csv)
         fclose(r->csv);
+    if (r->count == 0) {
+        fprintf(stderr, "bench: no row's name has '%s' in it; see bench --list\n", r->options.only);
+        return EXIT_FAILURE;
+    }
+    print_summary(r);
     if (r->options.picture)
         bench_picture(r->rows, r->count, r->options.picture);
     return EXIT_SUCCESS;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "random.h"
+#include "threads.h"
 
 #define CACHE_LINE 64
 /* Lines between two arrays: arrays of 2^n bytes apart would share the same few places of a cache. */
@@ -168,9 +169,12 @@ stf_world *bench_world_create(const bench_scene *scene, stf_allocator allocator)
     const stf_world_def def = {.integrator = stf_integrator_find(scene->integrator),
                                .step = (double)law.dt,
                                .gravity = {law.gravity[0], law.gravity[1], law.gravity[2]},
-                               .allocator = allocator};
+                               .allocator = allocator,
+                               .parallel = scene->form == LIBRARY_THREADS ? bench_threads() : (stf_parallel){0}};
     stf_world *world = NULL;
 
+    if (scene->form == LIBRARY_THREADS && !def.parallel.run)
+        return NULL;
     if (stf_world_create(&def, &world) || add_particles(scene, world) || add_forces(scene, world)) {
         stf_world_destroy(world);
         return NULL;

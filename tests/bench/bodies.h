@@ -29,7 +29,7 @@ bool bench_cloth_runs(const bench_scene *scene, reference_bodies *bodies);
 bool bench_bodies_create(const bench_scene *scene, reference_bodies *bodies);
 void bench_bodies_destroy(reference_bodies *bodies);
 
-/* NULL: no memory. */
+/* NULL: no memory; or no second thread, where the scene's form wants it. */
 stf_world *bench_world_create(const bench_scene *scene, stf_allocator allocator);
 
 #endif

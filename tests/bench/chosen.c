@@ -9,14 +9,17 @@
 #define IN_PRECISION(name) name##_f32
 #endif
 
-extern const reference IN_PRECISION(reference_baseline);
-#ifdef BENCH_X86_SETS
-extern const reference IN_PRECISION(reference_avx2), IN_PRECISION(reference_avx512);
-static const reference *const all[] = {&IN_PRECISION(reference_baseline), &IN_PRECISION(reference_avx2),
-                                       &IN_PRECISION(reference_avx512)};
-#else
-static const reference *const all[] = {&IN_PRECISION(reference_baseline)};
+extern const reference IN_PRECISION(reference_baseline), IN_PRECISION(reference_avx2), IN_PRECISION(reference_avx512);
+
+static const reference *const all[] = {
+#ifdef STF_HAS_AVX512
+    &IN_PRECISION(reference_avx512),
 #endif
+#ifdef STF_HAS_AVX2
+    &IN_PRECISION(reference_avx2),
+#endif
+    &IN_PRECISION(reference_baseline),
+};
 
 const reference *reference_chosen(void)
 {

@@ -17,11 +17,6 @@
 #define DEFAULT_TOTAL 1.0   /* s */
 #define DEFAULT_ROUNDS 15
 #define ROUNDS_MIN 3
-
-/* A short sample in which the process got less than this part of the time is taken again, so many times at most. */
-#define SHARE 0.98
-#define SHORT 0.02 /* s */
-#define RETRIES 4
 #define NS 1e9
 
 double measure_now(void)
@@ -47,15 +42,18 @@ double measure_median(double *values, size_t count)
     return (values[(count - 1) / 2] + values[count / 2]) / 2;
 }
 
+/* By the clock, less what the process did not get of it: with one thread, its time on the processor is the shorter. */
 static double time_runs(const measure_case *c, void *context, unsigned runs)
 {
     if (c->prepare)
         c->prepare(context);
 
+    const clock_t processor = clock();
     const double start = measure_now();
     for (unsigned i = 0; i < runs; i++)
         c->run(context);
-    return measure_now() - start;
+    const double taken = measure_now() - start, worked = (double)(clock() - processor) / CLOCKS_PER_SEC;
+    return worked > 0 && worked < taken ? worked : taken;
 }
 
 /* The runs that fill a sample. */
@@ -75,12 +73,7 @@ static void take_sample(const measure_case *c, void *context, measure_result *re
     if (!c->prepare)
         c->run(context);
 
-    double taken = 0, worked = 0;
-    for (int tries = 0; tries <= RETRIES && worked <= SHARE * taken && taken < SHORT; tries++) {
-        const clock_t before = clock();
-        taken = time_runs(c, context, result->runs);
-        worked = (double)(clock() - before) / CLOCKS_PER_SEC;
-    }
+    const double taken = time_runs(c, context, result->runs);
     result->samples[result->rounds++] = taken * NS / (result->runs * c->items);
 }
 
@@ -158,14 +151,10 @@ bool measure_pin(void)
     return sched_getaffinity(0, sizeof allowed, &allowed) == 0 && core >= 0 && sched_setaffinity(0, sizeof one, &one) == 0;
 }
 
-void measure_unpin(void)
-{
-    if (CPU_COUNT(&allowed) > 0)
-        sched_setaffinity(0, sizeof allowed, &allowed);
-}
+bool measure_unpin(void) { return CPU_COUNT(&allowed) > 0 && sched_setaffinity(0, sizeof allowed, &allowed) == 0; }
 #else
 bool measure_pin(void) { return false; }
-void measure_unpin(void) {}
+bool measure_unpin(void) { return false; }
 #endif
 
 const char *measure_processor(void)

@@ -1,6 +1,7 @@
 /*
  * measure: what a piece of code costs, on one core, beside others. Cases of one list are measured in turns, round after round,
  * so that what slows the machine for a while slows all of them: a ratio is taken within each round, and its median counts.
+ * Time in which another process had the core does not count. What waits or sleeps can't be measured with it.
  */
 #ifndef STEADFAST_TESTS_MEASURE_H
 #define STEADFAST_TESTS_MEASURE_H
@@ -53,8 +54,8 @@ double measure_now(void);
 
 /* Keeps the process on the core that it is on, so that no move between cores falls into a sample. False: not on this system. */
 bool measure_pin(void);
-/* Lets it, and threads that it starts from then on, run on every core that it was allowed before. */
-void measure_unpin(void);
+/* Lets it, and threads that it starts from then on, run on every core that it was allowed before; whether it was pinned. */
+bool measure_unpin(void);
 
 /* The processor's name, and the compiler's and its version. Static storage. */
 const char *measure_processor(void);

@@ -33,7 +33,8 @@ void bench_print_row(FILE *file, const bench_row *row)
     char median[24], least[24], most[24], compared[24] = "", target[24] = "", note[32] = "", n[24];
 
     if (!row->result.measured) {
-        fprintf(file, "%-36s %-6s %8zu  left out: no memory for it\n", row->name, row->precision->name, row->n);
+        fprintf(file, "%-36s %-6s %8zu  left out: no memory or no second core for it\n", row->name, row->precision->name,
+                row->n);
         return;
     }
     number(median, sizeof median, row->result.median);

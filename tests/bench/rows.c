@@ -29,7 +29,7 @@ static bench_row *add_row(bench_group *g, const bench_precision *p, const char *
     const bench_scene *scene = &g->scenes[measured];
 
     *row = (bench_row){.precision = p, .kind = scene->kind, .integrator = scene->integrator, .n = scene->n, .unit = unit,
-                       .library = scene->form == LIBRARY || scene->form == LIBRARY_SHUFFLED, .measured = measured};
+                       .library = bench_is_library(scene), .measured = measured};
     snprintf(row->name, sizeof row->name, "%s", name);
     return row;
 }
@@ -140,6 +140,18 @@ static void flat_group(bench_group *g, const bench_precision *p)
     }
 }
 
+/* 6 */
+static void threads_group(bench_group *g, const bench_precision *p, const char *name, bench_scene scene)
+{
+    const bool springs = scene.kind == CLOTH, pairs = scene.kind == PAIRS;
+    const double n = (double)scene.n, items = springs ? (double)bench_springs(&scene) : pairs ? n * (n - 1) : n;
+    bench_scene split = scene;
+
+    split.form = LIBRARY_THREADS;
+    const size_t one = add_case(g, p, scene, items), two = add_case(g, p, split, items);
+    compare(add_row(g, p, name, two, springs ? "ns/spring" : pairs ? "ns/pair" : "ns/particle"), RATIO, one, one, 1 / 1.8);
+}
+
 static void machine_group(bench_group *g, const bench_precision *p, size_t n)
 {
     const size_t copy = add_case(g, p, (bench_scene){MACHINE, COPY, EULER, n}, (double)n);
@@ -164,6 +176,10 @@ static void bytes_group(bench_group *g, const bench_precision *p)
         snprintf(name, sizeof name, "memory, %s", integrators[i]);
         compare(add_row(g, p, name, i, "bytes/particle"), VALUE, 0, 0, reals[i] * (double)p->real_bytes);
     }
+    /* 4: forces reach from block to block, so that all accelerations are kept at once: a vector more, whatever n is */
+    g->scenes[COUNT_OF(integrators)] = (bench_scene){PAIRS, LIBRARY, EULER, 1000000};
+    compare(add_row(g, p, "memory, all-pairs gravity", COUNT_OF(integrators), "bytes/particle"), VALUE, 0, 0,
+            10 * (double)p->real_bytes);
 }
 
 typedef struct taker {
@@ -193,6 +209,10 @@ static void small_groups(bench_group *g, const bench_precision *p, const taker *
     graph_group(fresh(g), p, 1000), give(g, to);
     graph_group(fresh(g), p, 100000), give(g, to);
     pairs_group(fresh(g), p, 1000, false), give(g, to);
+    threads_group(fresh(g), p, "two threads, semi_implicit_euler", (bench_scene){FREE, LIBRARY, EULER, 100000}), give(g, to);
+    threads_group(fresh(g), p, "two threads, rk4", (bench_scene){FREE, LIBRARY, RK4, 100000}), give(g, to);
+    threads_group(fresh(g), p, "two threads, cloth", (bench_scene){CLOTH, LIBRARY, EULER, 128 * 128}), give(g, to);
+    threads_group(fresh(g), p, "two threads, all-pairs gravity", (bench_scene){PAIRS, LIBRARY, EULER, 4000}), give(g, to);
 }
 
 void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void *user)

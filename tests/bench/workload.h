@@ -23,6 +23,7 @@ typedef enum bench_kind {
 typedef enum bench_form {
     LIBRARY,
     LIBRARY_SHUFFLED, /* springs in random order */
+    LIBRARY_THREADS,  /* on two threads */
     REFERENCE,        /* the loop of the integrator; of springs, runs; of pairs, tiles */
     EDGES,            /* a gather and a scatter a spring */
     EDGES_SORTED,     /* by first end, then by second */
@@ -38,13 +39,15 @@ typedef struct bench_scene {
     size_t n;               /* particles; of a cloth, a square number */
 } bench_scene;
 
+static inline bool bench_is_library(const bench_scene *scene) { return scene->form <= LIBRARY_THREADS; }
+
 typedef struct bench_precision {
     const char *name;
     size_t real_bytes;
     void *(*setup)(const void *scene); /* for measure_case; run makes one step */
     void (*run)(void *context);
     void (*teardown)(void *context);
-    /* Whether every form of this scene moves as the library does, to round-off; else says so in one line on stderr. */
+    /* Whether this form moves as the library does, to round-off (on two threads: bit by bit); else says so on stderr. */
     bool (*check)(const bench_scene *scene);
     /* Bytes that a world of n particles holds, from its allocator. */
     size_t (*world_bytes)(const bench_scene *scene);

@@ -72,8 +72,8 @@ flag_of() { [ "$1" = float ] || echo -DSTF_DOUBLE; }
 # What holds no reals and so has one name for both precisions.
 is_once() {
     case $1 in
-    stf_clock_* | stf_result_text | stf_version) ;; # functions; and stf_clock_def
-    stf_real | stf_result | stf_allocator | stf_clock | stf_force_kind | stf_force_id | stf_energy) ;;
+    stf_clock_* | stf_result_text | stf_version | stf_force_arranged) ;; # functions; and stf_clock_def
+    stf_real | stf_result | stf_allocator | stf_parallel | stf_clock | stf_force_kind | stf_force_id | stf_energy) ;;
     *) false ;;
     esac
 }

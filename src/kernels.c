@@ -1,0 +1,47 @@
+#include "kernels.h"
+
+#include "flight.h"
+
+static void accelerate_rows(const stf_flight *flight, stf_real *restrict a, const stf_real *restrict v,
+                            const stf_real *restrict inverse_mass)
+{
+    const size_t lanes = flight->stride / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
+    const stf_real drag = flight->drag;
+
+    for (size_t b = 0; b < flight->blocks; b++, inverse_mass += lanes)
+        for (unsigned d = 0; d < flight->dimensions; d++, a += lanes, v += lanes) {
+            const stf_real gravity = flight->gravity[d];
+
+            for (size_t i = 0; i < lanes; i++) {
+                const stf_real w = inverse_mass[i];
+                const stf_real pushed = stf_free_acceleration(stf_free_of(gravity, drag, w), v[i]) + a[i] * w;
+                a[i] = w > 0 ? pushed : 0;
+            }
+        }
+}
+
+static void accelerate(const stf_flight *flight, const stf_real *velocity, stf_real *a)
+{
+    accelerate_rows(flight, a, velocity, flight->inverse_mass);
+}
+
+#ifndef STF_VARIANT
+#define NAME stf_kernels_baseline
+#define TEXT "baseline"
+#else
+#define PASTE(a, b) a##b
+#define NAME_OF(variant) PASTE(stf_kernels_, variant)
+#define QUOTE(text) #text
+#define TEXT_OF(variant) QUOTE(variant)
+#define NAME NAME_OF(STF_VARIANT)
+#define TEXT TEXT_OF(STF_VARIANT)
+#endif
+
+const stf_kernels NAME = {
+    .name = TEXT,
+    .integrators = {&stf_explicit_euler, &stf_semi_implicit_euler, &stf_midpoint, &stf_improved_euler, &stf_rk4,
+                    &stf_position_verlet, &stf_velocity_verlet},
+    .forces = {&stf_force_linear_drag, &stf_force_quadratic_drag, &stf_force_attractor, &stf_force_anchored_springs,
+               &stf_force_springs, &stf_force_all_pairs_gravity},
+    .accelerate = accelerate,
+};

@@ -1,0 +1,41 @@
+/* The hot loops, compiled for several instruction sets from the same source, with the same bits. */
+#ifndef STEADFAST_SRC_KERNELS_H
+#define STEADFAST_SRC_KERNELS_H
+
+#include "real.h"
+#include "steadfast/force.h"
+#include "steadfast/integrator.h"
+
+#ifdef STF_DOUBLE
+#define stf_kernels stf_kernels_f64
+#define stf_kernels_baseline stf_kernels_baseline_f64
+#define stf_kernels_avx2 stf_kernels_avx2_f64
+#define stf_kernels_avx512 stf_kernels_avx512_f64
+#define stf_kernels_choose stf_kernels_choose_f64
+#define stf_kernels_integrator stf_kernels_integrator_f64
+#define stf_kernels_force stf_kernels_force_f64
+#endif
+
+#define STF_KERNEL_INTEGRATORS 7
+#define STF_KERNEL_FORCES 6
+
+/* What one instruction set has. The same place in two sets is the same integrator or force; the baseline's are the public ones. */
+typedef struct stf_kernels {
+    const char *name;
+    const stf_integrator *integrators[STF_KERNEL_INTEGRATORS];
+    const stf_force *forces[STF_KERNEL_FORCES];
+
+    /* a = gravity - (drag / m) v + F / m, 0 for the immovable, at these velocities. `a` holds F, in blocks, and gets a. */
+    void (*accelerate)(const stf_flight *flight, const stf_real *velocity, stf_real *a);
+} stf_kernels;
+
+extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;
+
+/* The widest set that this machine runs, or the one that the environment variable STEADFAST_ISA names. */
+const stf_kernels *stf_kernels_choose(void);
+
+/* The same integrator or force from this set; one that is not the library's is its own. */
+const stf_integrator *stf_kernels_integrator(const stf_kernels *kernels, const stf_integrator *integrator);
+const stf_force *stf_kernels_force(const stf_kernels *kernels, const stf_force *force);
+
+#endif
