@@ -342,6 +342,10 @@ int main(int argc, char **argv)
         } else {
             row = argv[i];
         }
+    if (!asked_section("flight") && !asked_section("cloth") && !asked_section("kepler") && !asked_section("oscillators")) {
+        fprintf(stderr, "peers: no row has \"%s\" in its section/peer/method: see --help\n", row);
+        return 1;
+    }
     setvbuf(stdout, NULL, _IOLBF, 0);
     print_peers();
     for (size_t t = 0; t < sizeof tables / sizeof *tables; t++)

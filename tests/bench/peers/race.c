@@ -10,11 +10,13 @@
 
 #define BODIES 1000
 #define SAMPLE 50        /* bodies of the search */
-#define SAMPLE_LIMIT 1.5 /* s that a run of the search may take: what takes longer, 30 s for all, is out of reach */
+#define SAMPLE_LIMIT 1.2 /* s that a run of the search may take: what takes longer, 24 s for all, is out of reach */
 #define PRUNE 10         /* a method that costs so many times the peer's best is given up */
 #define SLOW 1           /* s: a run that would take longer is not made: the sample's time counts, times BODIES / SAMPLE */
 #define PRUNE_FROM 0.05  /* s: and such times are never taken for much: another program may have had the core */
-#define FINE 1.02        /* how exact the setting is found */
+#define FINE 1.02        /* how exact the setting is found, */
+#define COARSE 1.1       /* and where a run of the sample takes more than COARSE_FROM s */
+#define COARSE_FROM 0.2
 #define PEERS_MAX 16
 #define METHODS_MAX 64
 
@@ -85,7 +87,7 @@ static double search(entry *e, double work, double limit, double *taken)
             work = low;
             *taken = t;
         }
-    while (work > low * FINE && (e->method->adaptive || ceil(work) > ceil(low) + 1)) {
+    while (work > low * (*taken > COARSE_FROM ? COARSE : FINE) && (e->method->adaptive || ceil(work) > ceil(low) + 1)) {
         const double middle = sqrt(work * low);
         if (meets(e, middle, &t)) {
             work = middle;
