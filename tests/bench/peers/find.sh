@@ -26,6 +26,7 @@ peers | while IFS='|' read -r name title include package debian; do
         [ -n "${1-}" ] || echo "$name"
     else
         [ -z "${1-}" ] || exit 1
-        echo "steadfast: no $(echo $title) here: its rows are left out; to have them type: make deps-peers (Debian: $(echo $debian))" >&2
+        echo "steadfast: no $(echo $title) here: its rows are left out; to have them type: make deps-peers" \
+             "(Debian: $(echo $debian))" >&2
     fi
 done
