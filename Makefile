@@ -108,9 +108,10 @@ HAVE_CMOCKA  = pkg-config --exists cmocka 2>/dev/null
 HAVE_SDL     = pkg-config --exists sdl2 SDL2_ttf SDL2_image 2>/dev/null
 
 # Whatever is asked for together with deps waits for it, also under -j.
-DEPS_FIRST := $(filter deps,$(MAKECMDGOALS))
+DEPS_FIRST := $(filter deps deps-peers,$(MAKECMDGOALS))
 
-.PHONY: all library demo run trade pictures test bench deps install uninstall clean help need-cmocka need-sdl
+.PHONY: all library demo run trade pictures test bench bench-peers deps deps-peers install uninstall clean help
+.PHONY: need-cmocka need-sdl
 
 all: library
 	@if $(HAVE_SDL); then $(MAKE) --no-print-directory demo; \
@@ -124,6 +125,8 @@ help:
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
+	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
+	@echo "make deps-peers      install those libraries"
 	@echo "make install         to PREFIX, LIBDIR, INCLUDEDIR, under DESTDIR; make uninstall takes it away"
 	@echo "make clean           remove build/"
 	@echo "settings             CC=clang  SAN=1  WERROR=1  V=1  OPTIMISE=-O2  PREFIX=..."
@@ -274,10 +277,59 @@ $(BUILD)/f64/tests/bench/%.o: tests/bench/%.c Makefile
 $(BENCH): $(BENCH_OBJECTS) $(REFERENCE_OBJECTS) $(STATIC)
 	$(say)$(LINK) $^ -lm -pthread -o $@
 
+# ---- peers: other libraries, those that are here -----------------------------------------------------------------------------
+
+# The peers' files, and ours beside them, are compiled for this very processor; the libraries come as the system has them.
+PEERS       =# bench-peers asks find.sh
+ROW         =# bench-peers: only rows with this in section/peer/method
+PEER_BUILD := $(BUILD)/peers
+PEER_FLAGS  = -O3 -march=native -fno-math-errno -fno-trapping-math -Iinclude -I$(<D) -MMD -MP \
+              -DPACKAGE_VERSION='"$(call package,--modversion $*)"' \
+              $(foreach p,box2d bullet ode gsl,$(patsubst -I%,-isystem %,$(call package,--cflags $(p)))) $(CPPFLAGS) $(CFLAGS)
+PEER_LIBS   = $(foreach p,$(filter box2d bullet ode gsl,$(PEERS)),$(call package,--libs $(p))) \
+              $(if $(filter chipmunk,$(PEERS)),-lchipmunk) \
+              $(if $(filter sundials,$(PEERS)),$(addprefix -lsundials_,arkode cvode nvecserial sunnonlinsolfixedpoint))
+PEER_CXX_WARNINGS = $(filter-out %-prototypes -Wold-style-definition -Wnested-externs,$(WARNINGS))
+PEER_OBJECTS = $(addprefix $(PEER_BUILD)/,$(addsuffix .o,peers race workload ours_float ours_double list $(PEERS)))
+
+bench-peers: library | $(DEPS_FIRST)
+	@peers="$$(CXX="$(CXX)" sh tests/bench/peers/find.sh)" && \
+	    $(MAKE) --no-print-directory PEERS="$$(echo $$peers)" $(PEER_BUILD)/peers
+	$(PEER_BUILD)/peers --csv $(BUILD)/peers.csv $(ROW)
+
+$(PEER_BUILD)/list.c: FORCE
+	@mkdir -p $(@D)
+	@{ echo '#include "table.h"'; \
+	    for p in ours_float ours_double $(PEERS); do echo "extern const peer peer_$$p;"; done; \
+	    echo 'const peer *const peers[] = {'; \
+	    for p in ours_float ours_double $(PEERS); do echo "&peer_$$p,"; done; echo 'NULL};'; \
+	} > $@.new; cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
+$(PEER_BUILD)/list.o: $(PEER_BUILD)/list.c
+	$(say)$(CC) -std=c99 $(PEER_FLAGS) -Itests/bench/peers -c $< -o $@
+
+$(addprefix $(PEER_BUILD)/ours_,float.o double.o): $(PEER_BUILD)/ours_%.o: tests/bench/peers/ours.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(CC) -std=c99 -pedantic $(WARNINGS) $(PEER_FLAGS) $(if $(filter double,$*),-DSTF_DOUBLE) -c $< -o $@
+
+$(PEER_BUILD)/%.o: tests/bench/peers/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(CC) -std=c99 -pedantic $(WARNINGS) $(PEER_FLAGS) -c $< -o $@
+
+$(PEER_BUILD)/%.o: tests/bench/peers/%.cpp Makefile
+	@mkdir -p $(@D)
+	$(say)$(CXX) -std=c++17 $(PEER_CXX_WARNINGS) $(PEER_FLAGS) -c $< -o $@
+
+$(PEER_BUILD)/peers: $(PEER_OBJECTS) $(BUILD)/f32/tests/bench/measure.o $(STATIC)
+	$(say)$(CXX) $(LDFLAGS) $^ $(PEER_LIBS) -lm -o $@
+
 # ---- dependencies, installation -----------------------------------------------------------------------------------------------
 
 deps:
 	@sh .ci/deps $(ALSO)
+
+deps-peers:
+	@sh .ci/deps only peers
 
 $(BUILD)/steadfast.pc: FORCE
 	@mkdir -p $(@D)
