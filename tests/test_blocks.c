@@ -244,6 +244,210 @@ static void parts_change_no_bit(void **state)
             }
 }
 
+/* Two whole calls of a flight, blocks that are left over, and enough for several parts. */
+#define MANY (20 * (size_t)STF_BLOCK_MAX + 5)
+
+/* What acts decides how a world is stepped: nothing, a field or a link. */
+static stf_world *large_world(const stf_integrator *integrator, const stf_force *acting, stf_parallel parallel)
+{
+    stf_world *world = make_world((stf_world_def){.integrator = integrator, .step = STEP, .substeps = 2, .gravity = {1, -9, 2},
+                                                  .keep_previous = true, .parallel = parallel});
+    uint64_t seed = 6;
+
+    assert_ok(stf_world_reserve(world, MANY));
+    for (size_t i = 0; i < MANY; i++) {
+        const stf_particle particle = random_particle(3, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.7});
+    if (acting)
+        add_force(world, acting, NULL);
+    return world;
+}
+
+static void assert_same_previous(const stf_world *a, const stf_world *b)
+{
+    static float of_a[3 * MANY], of_b[3 * MANY];
+
+    assert_ok(stf_world_copy_positions(a, 0, of_a, 0));
+    assert_ok(stf_world_copy_positions(b, 0, of_b, 0));
+    assert_memory_equal(of_a, of_b, sizeof of_a);
+}
+
+static void flight_of_many_blocks_changes_no_bit(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        uint64_t seed = 1;
+        stf_world *flying = large_world(stf_integrators[k], NULL, (stf_parallel){.tasks = 0});
+        stf_world *split =
+            large_world(stf_integrators[k], NULL, (stf_parallel){.run = run_shuffled, .tasks = 3, .user = &seed});
+        stf_world *stepping = large_world(stf_integrators[k], &idle_field, (stf_parallel){.tasks = 0});
+
+        for (unsigned ticks = 1; ticks <= 2; ticks++) {
+            assert_ok(stf_world_step(flying, ticks));
+            assert_ok(stf_world_step(split, ticks));
+            assert_ok(stf_world_step(stepping, ticks));
+            assert_same_particles(flying, stepping);
+            assert_same_particles(split, stepping);
+        }
+        assert_true(seed != 1); /* it was split */
+        stf_world_destroy(flying);
+        stf_world_destroy(split);
+        stf_world_destroy(stepping);
+    }
+}
+
+/* However a world is stepped, alpha 0 is where every particle was a tick ago. */
+static void previous_positions_are_those_of_the_tick_before(void **state)
+{
+    (void)state;
+    const stf_force *const acting[] = {NULL, &idle_field, &idle_link};
+    static float before[3 * MANY], previous[3 * MANY];
+
+    for (size_t f = 0; f < COUNT_OF(acting); f++)
+        for (unsigned tasks = 0; tasks <= 3; tasks += 3) {
+            uint64_t seed = 1;
+            const stf_parallel parallel = {.run = tasks ? run_shuffled : NULL, .tasks = tasks, .user = &seed};
+            stf_world *world = large_world(&stf_rk4, acting[f], parallel);
+            stf_world *behind = large_world(&stf_rk4, acting[f], parallel);
+
+            assert_ok(stf_world_step(world, 3));
+            assert_ok(stf_world_step(behind, 2));
+            assert_ok(stf_world_copy_positions(behind, 1, before, 0));
+            assert_ok(stf_world_copy_positions(world, 0, previous, 0));
+            assert_memory_equal(previous, before, sizeof previous);
+            assert_ok(stf_world_step(behind, 1));
+            assert_same_previous(world, behind);
+            stf_world_destroy(world);
+            stf_world_destroy(behind);
+        }
+}
+
+/* Springs as whole runs and loose, whose ends are in the same part and in two. */
+static stf_world *spring_world(unsigned dimensions, stf_parallel parallel)
+{
+    static const uint32_t steps[] = {1, 40, LARGEST / 2};
+    static stf_spring springs[(COUNT_OF(steps) + 1) * LARGEST];
+    stf_world *world = make_world((stf_world_def){.dimensions = dimensions, .step = STEP, .parallel = parallel});
+    uint64_t seed = dimensions;
+    size_t count = 0;
+
+    for (uint32_t i = 0; i < LARGEST; i++) {
+        const stf_particle particle = random_particle(dimensions, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+        for (size_t s = 0; s < COUNT_OF(steps); s++)
+            if (i + steps[s] < LARGEST)
+                springs[count++] = (stf_spring){.a = i, .b = i + steps[s]};
+        const uint32_t other = (uint32_t)(next_random(&seed) * LARGEST);
+        if (other != i)
+            springs[count++] = (stf_spring){.a = i, .b = other};
+    }
+    for (size_t s = 0; s < count; s++) {
+        springs[s].stiffness = (stf_real)next_random(&seed);
+        springs[s].damping = (stf_real)next_random(&seed);
+        springs[s].rest_length = (stf_real)next_random(&seed);
+    }
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+    return world;
+}
+
+static void parts_pull_each_end_of_a_spring_once(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (unsigned tasks = 2; tasks <= 7; tasks++) {
+            uint64_t seed = tasks;
+            stf_world *alone = spring_world(dimensions, (stf_parallel){.tasks = 0});
+            stf_world *split = spring_world(dimensions, (stf_parallel){.run = run_shuffled, .tasks = tasks, .user = &seed});
+
+            assert_ok(stf_world_step(alone, 2));
+            assert_ok(stf_world_step(split, 2));
+            assert_true(seed != tasks); /* it was split */
+            assert_same_particles(alone, split);
+            stf_world_destroy(alone);
+            stf_world_destroy(split);
+        }
+}
+
+/* The scratch that each part of a step was given, as the integrator below sees it. */
+#define SCRATCH_ARRAYS 2
+#define SCRATCH_PARTS 5
+static struct {
+    unsigned part;
+    const stf_real *begin[SCRATCH_PARTS * SCRATCH_ARRAYS], *end[SCRATCH_PARTS * SCRATCH_ARRAYS];
+} scratch;
+
+static void fill_scratch(stf_system *system, stf_real dt)
+{
+    for (size_t k = 0; k < SCRATCH_ARRAYS; k++) {
+        for (size_t i = 0; i < system->length; i++)
+            system->work[k][i] = dt;
+        scratch.begin[scratch.part * SCRATCH_ARRAYS + k] = system->work[k];
+        scratch.end[scratch.part * SCRATCH_ARRAYS + k] = system->work[k] + system->length;
+    }
+}
+
+static void run_and_say_which(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    (void)user;
+    assert_int_equal(tasks, SCRATCH_PARTS);
+    for (scratch.part = 0; scratch.part < tasks; scratch.part++)
+        task(context, scratch.part);
+}
+
+/* Parts may run at the same time, so no two may write to the same place; nor may they write over particles. */
+static void parts_have_scratch_of_their_own(void **state)
+{
+    (void)state;
+    const stf_integrator filler = {.name = "filler", .step = fill_scratch, .work_arrays = SCRATCH_ARRAYS};
+    const stf_parallel parallel = {.run = run_and_say_which, .tasks = SCRATCH_PARTS};
+    stf_world *world = large_world(&filler, NULL, parallel), *still = large_world(&filler, NULL, (stf_parallel){.tasks = 0});
+
+    memset(&scratch, 0, sizeof scratch);
+    assert_ok(stf_world_step(world, 1));
+    for (size_t a = 0; a < COUNT_OF(scratch.begin); a++) {
+        assert_non_null(scratch.begin[a]);
+        for (size_t b = 0; b < a; b++)
+            assert_true(scratch.end[a] <= scratch.begin[b] || scratch.end[b] <= scratch.begin[a]);
+    }
+    assert_same_particles(world, still);
+    stf_world_destroy(world);
+    stf_world_destroy(still);
+}
+
+static void run_and_count(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+    ++*(unsigned *)user;
+}
+
+/* A link that keeps to its part needs no other part to be done; for one that does not all fields come first, then all links. */
+static void links_of_the_library_run_within_the_parts(void **state)
+{
+    (void)state;
+    const stf_force *const links[] = {&stf_force_all_pairs_gravity, &stf_force_springs, &idle_link};
+    const stf_all_pairs_gravity gravity = {.gravitational_constant = 1, .softening = 1};
+    const stf_spring spring = {.a = 0, .b = LARGEST - 1, .stiffness = 1};
+    const void *const records[] = {&gravity, &spring, NULL};
+
+    for (size_t l = 0; l < COUNT_OF(links); l++) {
+        unsigned calls = 0;
+        stf_world *world =
+            make_world((stf_world_def){.step = STEP, .parallel = {.run = run_and_count, .tasks = 2, .user = &calls}});
+        const stf_particle particle = {.inverse_mass = 1};
+
+        for (size_t i = 0; i < LARGEST; i++)
+            assert_ok(stf_world_add(world, &particle, NULL));
+        add_force(world, links[l], records[l]);
+        assert_ok(stf_world_step(world, 1)); /* semi-implicit Euler: one acceleration */
+        assert_int_equal(calls, links[l]->splits ? 1 : 2);
+        assert_true(links[l]->splits == (links[l] != &idle_link));
+        stf_world_destroy(world);
+    }
+}
+
 /* An engine may hand out more tasks than there are blocks, or just one. */
 static void parts_are_never_more_than_blocks(void **state)
 {
@@ -583,6 +787,11 @@ int main(void)
         cmocka_unit_test(flight_changes_no_bit),
         cmocka_unit_test(user_drag_is_twice_its_record),
         cmocka_unit_test(parts_change_no_bit),
+        cmocka_unit_test(parts_pull_each_end_of_a_spring_once),
+        cmocka_unit_test(flight_of_many_blocks_changes_no_bit),
+        cmocka_unit_test(previous_positions_are_those_of_the_tick_before),
+        cmocka_unit_test(parts_have_scratch_of_their_own),
+        cmocka_unit_test(links_of_the_library_run_within_the_parts),
         cmocka_unit_test(parts_are_never_more_than_blocks),
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
         cmocka_unit_test(groups_of_ticks_change_no_bit),

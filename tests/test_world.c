@@ -499,6 +499,51 @@ static void forces_see_the_time_of_their_stage(void **state)
     stf_world_destroy(world);
 }
 
+/* Ticks count on where the step changes, and time with them. */
+static void forces_see_the_time_that_the_world_says_after_a_change_of_step(void **state)
+{
+    (void)state;
+    static const stf_force noter = {.name = "noter", .record_size = sizeof(double *), .apply = note_time};
+    const double expected[] = {0, 0.5, 1, 1.25, 1.5};
+    double times[TIMES] = {0}, *at = times;
+    stf_world *world = make_world((stf_world_def){.integrator = &stf_explicit_euler, .step = 0.5});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &noter, &at);
+    assert_ok(stf_world_step(world, 2));
+    assert_ok(stf_world_set_step(world, 0.25));
+    assert_ok(stf_world_step(world, 2));
+    assert_ok(stf_world_step(world, 1));
+    assert_true(times[0] == COUNT_OF(expected));
+    for (size_t i = 0; i < COUNT_OF(expected); i++)
+        assert_true(times[1 + i] == expected[i]);
+    assert_true(stf_world_time(world) == 1.75);
+    stf_world_destroy(world);
+}
+
+/* Through growth from a small block to whole ones, a removal and a set; each particle its own. */
+static void radii_are_kept_where_the_def_asks_for_them(void **state)
+{
+    (void)state;
+    enum { FEW = 10, ALL = 2 * STF_BLOCK_MAX + 5 };
+    static stf_particle lot[ALL];
+    stf_world *world = make_world((stf_world_def){.keep_radius = true});
+    const size_t last = ALL - 1;
+
+    for (size_t i = 0; i < ALL; i++)
+        lot[i] = (stf_particle){.inverse_mass = 1, .radius = (stf_real)(i + 1)};
+    assert_ok(stf_world_add_many(world, lot, FEW, NULL));
+    assert_ok(stf_world_add_many(world, lot + FEW, ALL - FEW, NULL));
+    assert_ok(stf_world_reserve(world, 2 * ALL));
+    for (size_t i = 0; i < ALL; i++)
+        assert_true(particle_of(world, i).radius == (stf_real)(i + 1));
+    assert_ok(stf_world_set(world, 7, &(stf_particle){.radius = (stf_real)0.5}));
+    assert_ok(stf_world_remove(world, 3, NULL));
+    assert_true(particle_of(world, 7).radius == (stf_real)0.5 && particle_of(world, 3).radius == (stf_real)(last + 1));
+    assert_true(particle_of(world, 6).radius == 7 && particle_of(world, 8).radius == 9);
+    stf_world_destroy(world);
+}
+
 static void positions_are_copied_out_blended_and_strided(void **state)
 {
     (void)state;
@@ -1163,6 +1208,8 @@ int main(void)
         cmocka_unit_test(without_memory_no_world_is_made),
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
+        cmocka_unit_test(forces_see_the_time_that_the_world_says_after_a_change_of_step),
+        cmocka_unit_test(radii_are_kept_where_the_def_asks_for_them),
         cmocka_unit_test(positions_are_copied_out_blended_and_strided),
         cmocka_unit_test(energy_and_momentum_are_their_sums),
         cmocka_unit_test(immovable_particles_have_no_gravitational_energy),
