@@ -499,25 +499,127 @@ static void forces_see_the_time_of_their_stage(void **state)
     stf_world_destroy(world);
 }
 
-/* Ticks count on where the step changes, and time with them. */
+/* Ticks count on where the step changes, and time with them: for fields as for links. */
 static void forces_see_the_time_that_the_world_says_after_a_change_of_step(void **state)
 {
     (void)state;
-    static const stf_force noter = {.name = "noter", .record_size = sizeof(double *), .apply = note_time};
     const double expected[] = {0, 0.5, 1, 1.25, 1.5};
-    double times[TIMES] = {0}, *at = times;
-    stf_world *world = make_world((stf_world_def){.integrator = &stf_explicit_euler, .step = 0.5});
 
-    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
-    add_force(world, &noter, &at);
+    for (int link = 0; link < 2; link++) {
+        const stf_force noter = {.name = "noter",
+                                 .kind = link ? STF_LINK : STF_FIELD,
+                                 .record_size = sizeof(double *),
+                                 .apply = note_time};
+        double times[TIMES] = {0}, *at = times;
+        stf_world *world = make_world((stf_world_def){.integrator = &stf_explicit_euler, .step = 0.5});
+
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+        add_force(world, &noter, &at);
+        assert_ok(stf_world_step(world, 2));
+        assert_ok(stf_world_set_step(world, 0.25));
+        assert_ok(stf_world_step(world, 2));
+        assert_ok(stf_world_step(world, 1));
+        assert_true(times[0] == COUNT_OF(expected));
+        for (size_t i = 0; i < COUNT_OF(expected); i++)
+            assert_true(times[1 + i] == expected[i]);
+        assert_true(stf_world_time(world) == 1.75);
+        stf_world_destroy(world);
+    }
+}
+
+/* More than a block, of particles that all differ. */
+#define CROWD (2 * (size_t)STF_BLOCK_MAX + 5)
+
+static stf_world *crowd(const stf_integrator *integrator, counting *memory)
+{
+    stf_world *world = make_world((stf_world_def){
+        .integrator = integrator, .step = 1.0 / 8, .gravity = {0, -2, 1}, .allocator = counting_allocator(memory)});
+
+    for (size_t i = 0; i < CROWD; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 1, -(stf_real)i},
+                                                       .velocity = {1, (stf_real)i, 2},
+                                                       .inverse_mass = (stf_real)(i % 3)}, NULL));
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.1});
+    add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
+    return world;
+}
+
+/* Whatever integrator was there before, with history or without, in memory full of garbage. */
+static void an_integrator_goes_on_as_if_it_had_started_there(void **state)
+{
+    (void)state;
+    for (int from = 0; stf_integrators[from]; from++)
+        for (int to = 0; stf_integrators[to]; to++) {
+            counting c = {0}, d = {0};
+            stf_world *changed = crowd(stf_integrators[from], &c), *fresh = crowd(stf_integrators[to], &d);
+
+            if (from != to) {
+                assert_ok(stf_world_step(changed, 3));
+                for (size_t i = 0; i < CROWD; i++) {
+                    const stf_particle particle = particle_of(changed, i);
+                    assert_ok(stf_world_set(fresh, i, &particle));
+                }
+                assert_ok(stf_world_set_integrator(changed, stf_integrators[to]));
+                assert_ok(stf_world_step(changed, 3));
+                assert_ok(stf_world_step(fresh, 3));
+            }
+            for (size_t i = 0; i < CROWD; i++) {
+                const stf_particle p = particle_of(changed, i), q = particle_of(fresh, i);
+                assert_memory_equal(&p, &q, sizeof p);
+            }
+            stf_world_destroy(changed);
+            stf_world_destroy(fresh);
+        }
+}
+
+/* Adds up the velocity once in one history and twice in the other, and shows both. */
+static void sum_twice(stf_system *system, stf_real dt)
+{
+    (void)dt;
+    for (size_t i = 0; i < system->length; i++) {
+        stf_real *once = &system->history[0][i], *twice = &system->history[1][i];
+        *once = (*once == *once ? *once : 0) + system->velocity[i];
+        *twice = (*twice == *twice ? *twice : 0) + 2 * system->velocity[i];
+        system->position[i] = *once + 1000 * *twice;
+    }
+}
+
+static void every_history_moves_with_its_particles(void **state)
+{
+    (void)state;
+    const stf_integrator summing = {.name = "summing", .step = sum_twice, .history_arrays = 2};
+    stf_world *world = make_world((stf_world_def){.integrator = &summing, .step = 1});
+
+    for (int i = 0; i < 10; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 2, (stf_real)i}}, NULL));
     assert_ok(stf_world_step(world, 2));
-    assert_ok(stf_world_set_step(world, 0.25));
-    assert_ok(stf_world_step(world, 2));
+    assert_ok(stf_world_reserve(world, 20));   /* into wider rows */
+    assert_ok(stf_world_reserve(world, CROWD)); /* and into more blocks */
+    assert_ok(stf_world_reserve(world, 2 * CROWD));
+    assert_ok(stf_world_remove(world, 0, NULL));
     assert_ok(stf_world_step(world, 1));
-    assert_true(times[0] == COUNT_OF(expected));
-    for (size_t i = 0; i < COUNT_OF(expected); i++)
-        assert_true(times[1 + i] == expected[i]);
-    assert_true(stf_world_time(world) == 1.75);
+    for (size_t i = 0; i < 9; i++) { /* 3 steps: 3 v and 6 v */
+        const stf_vector x = particle_of(world, i).position;
+        assert_true(x.x == 6003 && x.y == 2 * 6003 && x.z == 6003 * (stf_real)(i == 0 ? 9 : i));
+    }
+    stf_world_destroy(world);
+}
+
+/* The smallest and the largest that is no error, alone, in a lot and set. */
+static void masses_and_radii_are_taken_up_to_their_limits(void **state)
+{
+    (void)state;
+    const stf_real least = sizeof(stf_real) == sizeof(float) ? (stf_real)FLT_MIN : (stf_real)DBL_MIN;
+    const stf_particle edge[] = {{.inverse_mass = least, .radius = (stf_real)REAL_MAX},
+                                 {.inverse_mass = (stf_real)REAL_MAX, .radius = least}};
+    stf_world *world = make_world((stf_world_def){.keep_radius = true});
+
+    assert_ok(stf_world_add_many(world, edge, COUNT_OF(edge), NULL));
+    for (size_t i = 0; i < COUNT_OF(edge); i++) {
+        assert_ok(stf_world_add(world, &edge[i], NULL));
+        assert_ok(stf_world_set(world, 0, &edge[i]));
+        assert_true(particle_of(world, 0).inverse_mass == edge[i].inverse_mass && particle_of(world, 0).radius == edge[i].radius);
+    }
     stf_world_destroy(world);
 }
 
@@ -1012,6 +1114,22 @@ static void many_small_lots_move_the_world_seldom(void **state)
     stf_world_destroy(once);
 }
 
+/* A world that has no particles yet has nothing to grow from, whatever was reserved. */
+static void room_for_a_first_lot_is_exact(void **state)
+{
+    (void)state;
+    enum { RESERVED = 60000, LOT = 100000 };
+    counting c = {0};
+    stf_world *world = make_world((stf_world_def){.dimensions = 1, .capacity = RESERVED, .allocator = counting_allocator(&c)});
+    stf_particle *lot = calloc(LOT, sizeof *lot);
+
+    assert_non_null(lot);
+    assert_ok(stf_world_add_many(world, lot, LOT, NULL));
+    assert_true(c.bytes < LOT * 5 * sizeof(stf_real)); /* state, inverse mass, a work array of a block */
+    free(lot);
+    stf_world_destroy(world);
+}
+
 static void forces_without_records_sleep(void **state)
 {
     (void)state;
@@ -1209,6 +1327,9 @@ int main(void)
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
         cmocka_unit_test(forces_see_the_time_that_the_world_says_after_a_change_of_step),
+        cmocka_unit_test(an_integrator_goes_on_as_if_it_had_started_there),
+        cmocka_unit_test(every_history_moves_with_its_particles),
+        cmocka_unit_test(masses_and_radii_are_taken_up_to_their_limits),
         cmocka_unit_test(radii_are_kept_where_the_def_asks_for_them),
         cmocka_unit_test(positions_are_copied_out_blended_and_strided),
         cmocka_unit_test(energy_and_momentum_are_their_sums),
@@ -1227,6 +1348,7 @@ int main(void)
         cmocka_unit_test(a_moved_particle_goes_on_as_if_alone),
         cmocka_unit_test(only_a_new_position_is_a_teleport),
         cmocka_unit_test(many_small_lots_move_the_world_seldom),
+        cmocka_unit_test(room_for_a_first_lot_is_exact),
         cmocka_unit_test(forces_without_records_sleep),
         cmocka_unit_test(attraction_reaches_to_the_edge_of_the_reals),
         cmocka_unit_test(known_integrators_and_records_take_no_more_memory),
