@@ -298,6 +298,52 @@ static void flight_of_many_blocks_changes_no_bit(void **state)
     }
 }
 
+/* Blocks that are stepped by themselves, under a force of time. */
+static void parts_of_loose_blocks_change_no_bit(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++)
+        for (unsigned tasks = 2; tasks <= 4; tasks++) {
+            uint64_t seed = 1;
+            const stf_parallel shuffled = {.run = run_shuffled, .tasks = tasks, .user = &seed};
+            stf_world *alone = large_world(stf_integrators[k], &time_force, (stf_parallel){.tasks = 0});
+            stf_world *split = large_world(stf_integrators[k], &time_force, shuffled);
+
+            assert_ok(stf_world_step(alone, 2));
+            assert_ok(stf_world_step(split, 2));
+            assert_true(seed != 1); /* it was split */
+            assert_same_particles(alone, split);
+            stf_world_destroy(alone);
+            stf_world_destroy(split);
+        }
+}
+
+/* Pushes every particle, whatever its part is: so says a link that does not say that it splits. */
+static void push_all(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)record_count, (void)time;
+    for (size_t i = 0; i < particles->count; i++)
+        particles->force[stf_particles_offset(particles, i)] += 1;
+}
+
+static void a_link_of_the_user_is_called_once_for_all_parts(void **state)
+{
+    (void)state;
+    static const stf_force pusher = {.name = "pusher", .kind = STF_LINK, .apply = push_all};
+    uint64_t seed = 1;
+    stf_world *world = make_world(
+        (stf_world_def){.step = 1, .parallel = {.run = run_shuffled, .tasks = 3, .user = &seed}});
+
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &pusher, NULL);
+    assert_ok(stf_world_step(world, 1));
+    assert_true(seed != 1); /* it was split */
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_true(particle_of(world, i).velocity.x == 1);
+    stf_world_destroy(world);
+}
+
 /* However a world is stepped, alpha 0 is where every particle was a tick ago. */
 static void previous_positions_are_those_of_the_tick_before(void **state)
 {
@@ -738,6 +784,7 @@ static void assert_acceleration_is_what_a_step_adds(size_t count, bool tied)
         assert_ok(stf_world_add(world, &(stf_particle){.position = {wave * (stf_real)i, 1, 0},
                                                        .velocity = {1, (stf_real)i, wave},
                                                        .inverse_mass = (stf_real)(i % 3)}, NULL));
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.25});
     add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
     if (tied)
         add_force(world, &stf_force_springs, &(stf_spring){.a = 0, .b = (uint32_t)count - 1, .stiffness = 1});
@@ -789,6 +836,8 @@ int main(void)
         cmocka_unit_test(parts_change_no_bit),
         cmocka_unit_test(parts_pull_each_end_of_a_spring_once),
         cmocka_unit_test(flight_of_many_blocks_changes_no_bit),
+        cmocka_unit_test(parts_of_loose_blocks_change_no_bit),
+        cmocka_unit_test(a_link_of_the_user_is_called_once_for_all_parts),
         cmocka_unit_test(previous_positions_are_those_of_the_tick_before),
         cmocka_unit_test(parts_have_scratch_of_their_own),
         cmocka_unit_test(links_of_the_library_run_within_the_parts),
