@@ -439,6 +439,56 @@ static void without_memory_calls_fail_and_change_nothing_they_did_not_do(void **
         }
 }
 
+/* Hands out another allocator's memory until it is told to refuse; then it notes the least that it was asked for. */
+typedef struct shortage {
+    stf_allocator lender;
+    bool refuses;
+    size_t least; /* bytes */
+} shortage;
+
+static void *lend(void *user, size_t size, size_t alignment)
+{
+    shortage *s = user;
+
+    if (!s->refuses)
+        return s->lender.allocate(s->lender.user, size, alignment);
+    if (size < s->least)
+        s->least = size;
+    return NULL;
+}
+
+static void give_back(void *user, void *memory, size_t size)
+{
+    const shortage *s = user;
+    s->lender.release(s->lender.user, memory, size);
+}
+
+/* With every array that a world may have, at the very capacities whose bytes are about as many as a size_t counts. */
+static void no_room_is_asked_for_whose_bytes_wrap_round(void **state)
+{
+    (void)state;
+    enum { ROWS = 3 * (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX) + 2 };
+    const stf_integrator greedy = {.name = "greedy",
+                                   .step = stf_rk4.step,
+                                   .work_arrays = STF_WORK_ARRAYS_MAX,
+                                   .history_arrays = STF_HISTORY_ARRAYS_MAX};
+    const size_t limit = SIZE_MAX / sizeof(stf_real) / ROWS;
+    counting c = {0};
+    shortage s = {.lender = counting_allocator(&c), .least = SIZE_MAX};
+    stf_world *world = make_world((stf_world_def){.integrator = &greedy,
+                                                  .keep_previous = true,
+                                                  .keep_radius = true,
+                                                  .allocator = {.allocate = lend, .release = give_back, .user = &s}});
+
+    add_force(world, &idle_link, NULL);
+    s.refuses = true;
+    for (size_t capacity = limit - 2000; capacity <= limit + 2000; capacity++)
+        assert_refused(stf_world_reserve(world, capacity), STF_ERROR_MEMORY);
+    assert_true(s.least > SIZE_MAX / 2);
+    stf_world_destroy(world);
+    assert_int_equal(c.blocks, 0);
+}
+
 static void without_memory_no_world_is_made(void **state)
 {
     (void)state;
@@ -1324,6 +1374,7 @@ int main(void)
         cmocka_unit_test(all_memory_comes_from_the_allocator_and_goes_back),
         cmocka_unit_test(steps_and_questions_allocate_nothing),
         cmocka_unit_test(without_memory_calls_fail_and_change_nothing_they_did_not_do),
+        cmocka_unit_test(no_room_is_asked_for_whose_bytes_wrap_round),
         cmocka_unit_test(without_memory_no_world_is_made),
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
