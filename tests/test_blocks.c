@@ -826,6 +826,59 @@ static void accelerations_are_those_of_a_step_and_change_nothing(void **state)
     assert_refused(stf_world_accelerations(NULL, 0, NULL, NULL, NULL), STF_ERROR_NULL);
 }
 
+static void accelerations_are_of_the_time_that_is_asked_for(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1});
+    const stf_real *x, *v;
+    stf_real a[3 * STF_BLOCK_MAX];
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &time_force, NULL);
+    x = stf_world_view(world).position, v = stf_world_view(world).velocity;
+    assert_ok(stf_world_accelerations(world, 0, x, v, a));
+    assert_true(a[0] == 1); /* cos 0 */
+    assert_ok(stf_world_accelerations(world, 1, x, v, a));
+    assert_close(a[0], 0.54030230586813977, REAL_EPSILON); /* cos 1 */
+    assert_refused(stf_world_accelerations(NULL, 0, x, v, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, NULL, v, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, x, NULL, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, x, v, NULL), STF_ERROR_NULL);
+    stf_world_destroy(world);
+}
+
+static void stand_still(stf_system *system, stf_real dt) { (void)system, (void)dt; }
+
+/* No particles and no arrays is no memory that is missed. */
+static void an_empty_world_of_an_integrator_without_arrays_steps(void **state)
+{
+    (void)state;
+    const stf_integrator still = {.name = "still", .step = stand_still};
+    stf_world *world = make_world((stf_world_def){.integrator = &still, .step = 1});
+
+    assert_ok(stf_world_step(world, 2));
+    assert_int_equal(stf_world_view(world).count, 0);
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 2, 3}}, NULL));
+    assert_ok(stf_world_step(world, 2));
+    assert_true(particle_of(world, 0).position.z == 3);
+    stf_world_destroy(world);
+}
+
+/* More arrays need other memory, with as much room. */
+static void room_is_kept_where_the_integrator_changes(void **state)
+{
+    (void)state;
+    counting c = {0};
+    stf_world *world = make_world((stf_world_def){.capacity = LARGEST, .allocator = counting_allocator(&c)});
+
+    assert_ok(stf_world_set_integrator(world, &stf_rk4));
+    const size_t calls = c.calls;
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_int_equal(c.calls, calls);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -851,6 +904,9 @@ int main(void)
         cmocka_unit_test(elements_of_no_particle_are_zero),
         cmocka_unit_test(an_integrator_finds_nothing_of_the_one_before),
         cmocka_unit_test(accelerations_are_those_of_a_step_and_change_nothing),
+        cmocka_unit_test(accelerations_are_of_the_time_that_is_asked_for),
+        cmocka_unit_test(an_empty_world_of_an_integrator_without_arrays_steps),
+        cmocka_unit_test(room_is_kept_where_the_integrator_changes),
     };
 
     return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);

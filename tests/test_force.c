@@ -262,6 +262,53 @@ static void springs_of_a_cloth_add_up(void **state)
     }
 }
 
+/* A chain is one run until an end of its springs leaves its block: one end does so before the other. */
+static void chains_across_blocks_add_up(void **state)
+{
+    (void)state;
+    static const uint32_t steps[] = {1, 7, STF_BLOCK_MAX - 1, STF_BLOCK_MAX, STF_BLOCK_MAX + 1};
+    static stf_spring springs[CLOTH];
+    static stf_particle particles[CLOTH];
+    static vector forces[CLOTH];
+
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (size_t k = 0; k < COUNT_OF(steps); k++) {
+            stf_world *world = random_world(dimensions, CLOTH);
+            size_t count = 0;
+
+            for (uint32_t i = 0; i + steps[k] < CLOTH; i++)
+                springs[count++] = (stf_spring){.a = i, .b = i + steps[k], .stiffness = 1, .damping = (stf_real)0.5};
+            memset(forces, 0, sizeof forces);
+            copy_particles(world, particles);
+            add_spring_forces(springs, count, particles, forces);
+            assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+            check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8); /* as above: two springs of k = 1, c = 0.5 */
+        }
+}
+
+/* The most pieces that so many springs can fall into: a shortest run and a loose spring in every block. */
+static void a_run_and_a_loose_spring_in_every_block_add_up(void **state)
+{
+    (void)state;
+    enum { SHORTEST_RUN = 16, BLOCKS = 9, ALL = BLOCKS * STF_BLOCK_MAX };
+    static stf_spring springs[BLOCKS * (SHORTEST_RUN + 1)];
+    static stf_particle particles[ALL];
+    static vector forces[ALL];
+    stf_world *world = random_world(3, ALL);
+    size_t count = 0;
+
+    for (uint32_t block = 0; block < BLOCKS; block++) {
+        const uint32_t first = block * STF_BLOCK_MAX;
+        for (uint32_t i = 0; i < SHORTEST_RUN; i++)
+            springs[count++] = (stf_spring){.a = first + i, .b = first + i + 1, .stiffness = 1, .damping = (stf_real)0.5};
+        springs[count++] = (stf_spring){.a = first, .b = first + 90, .stiffness = 1, .damping = (stf_real)0.5};
+    }
+    copy_particles(world, particles);
+    add_spring_forces(springs, count, particles, forces);
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+    check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8);
+}
+
 static void the_order_of_springs_changes_no_bit(void **state)
 {
     (void)state;
@@ -690,6 +737,8 @@ int main(void)
         cmocka_unit_test(attractors_pull_by_the_inverse_square),
         cmocka_unit_test(springs_pull_both_ends_alike),
         cmocka_unit_test(springs_of_a_cloth_add_up),
+        cmocka_unit_test(chains_across_blocks_add_up),
+        cmocka_unit_test(a_run_and_a_loose_spring_in_every_block_add_up),
         cmocka_unit_test(the_order_of_springs_changes_no_bit),
         cmocka_unit_test(springs_of_the_same_ends_are_kept_in_one_order),
         cmocka_unit_test(removals_leave_springs_in_order),

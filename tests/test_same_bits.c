@@ -119,6 +119,7 @@ static void the_instruction_set_that_is_asked_for_is_given(void **state)
 
     assert_true(is_given("baseline", "baseline"));
     assert_true(is_given(widest, widest));
+    assert_true(is_given("avx512", widest));
     assert_true(is_given("avx2", strcmp(widest, "avx512") == 0 ? "avx2" : widest));
     assert_true(is_given("no such set", widest));
     assert_true(is_given("", widest));

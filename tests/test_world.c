@@ -1168,7 +1168,7 @@ static void many_small_lots_move_the_world_seldom(void **state)
 static void room_for_a_first_lot_is_exact(void **state)
 {
     (void)state;
-    enum { RESERVED = 60000, LOT = 100000 };
+    enum { RESERVED = 90000, LOT = 100000 };
     counting c = {0};
     stf_world *world = make_world((stf_world_def){.dimensions = 1, .allocator = counting_allocator(&c)});
     stf_particle *lot = calloc(LOT, sizeof *lot);
