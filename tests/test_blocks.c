@@ -830,12 +830,11 @@ static void accelerations_are_of_the_time_that_is_asked_for(void **state)
 {
     (void)state;
     stf_world *world = make_world((stf_world_def){.step = 1});
-    const stf_real *x, *v;
     stf_real a[3 * STF_BLOCK_MAX];
 
     assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
     add_force(world, &time_force, NULL);
-    x = stf_world_view(world).position, v = stf_world_view(world).velocity;
+    const stf_real *x = stf_world_view(world).position, *v = stf_world_view(world).velocity;
     assert_ok(stf_world_accelerations(world, 0, x, v, a));
     assert_true(a[0] == 1); /* cos 0 */
     assert_ok(stf_world_accelerations(world, 1, x, v, a));

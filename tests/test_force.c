@@ -448,7 +448,8 @@ static void every_record_of_a_force_counts(void **state)
     (void)state;
     const stf_linear_drag linear[] = {{(stf_real)0.5}, {(stf_real)0.3}};
     const stf_quadratic_drag quadratic[] = {{(stf_real)0.5}, {(stf_real)0.3}};
-    const stf_attractor attractors[] = {{.strength = 2, .softening = 1}, {.position = {1, 0, 0}, .strength = 3, .softening = 1}};
+    const stf_attractor attractors[] = {{.strength = 2, .softening = 1},
+                                        {.position = {1, 0, 0}, .strength = 3, .softening = 1}};
     const stf_all_pairs_gravity gravity[] = {{1, 1}, {(stf_real)0.3, 2}};
     const stf_force *const forces[] = {&stf_force_linear_drag, &stf_force_quadratic_drag, &stf_force_attractor,
                                        &stf_force_all_pairs_gravity};

@@ -643,7 +643,7 @@ static void every_history_moves_with_its_particles(void **state)
     for (int i = 0; i < 10; i++)
         assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 2, (stf_real)i}}, NULL));
     assert_ok(stf_world_step(world, 2));
-    assert_ok(stf_world_reserve(world, 20));   /* into wider rows */
+    assert_ok(stf_world_reserve(world, 20)); /* into wider rows */
     assert_ok(stf_world_reserve(world, CROWD)); /* and into more blocks */
     assert_ok(stf_world_reserve(world, 2 * CROWD));
     assert_ok(stf_world_remove(world, 0, NULL));
@@ -668,7 +668,8 @@ static void masses_and_radii_are_taken_up_to_their_limits(void **state)
     for (size_t i = 0; i < COUNT_OF(edge); i++) {
         assert_ok(stf_world_add(world, &edge[i], NULL));
         assert_ok(stf_world_set(world, 0, &edge[i]));
-        assert_true(particle_of(world, 0).inverse_mass == edge[i].inverse_mass && particle_of(world, 0).radius == edge[i].radius);
+        assert_true(particle_of(world, 0).inverse_mass == edge[i].inverse_mass);
+        assert_true(particle_of(world, 0).radius == edge[i].radius);
     }
     stf_world_destroy(world);
 }
