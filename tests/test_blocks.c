@@ -244,6 +244,256 @@ static void parts_change_no_bit(void **state)
             }
 }
 
+/* Two whole calls of a flight, blocks that are left over, and enough for several parts. */
+#define MANY (20 * (size_t)STF_BLOCK_MAX + 5)
+
+/* What acts decides how a world is stepped: nothing, a field or a link. */
+static stf_world *large_world(const stf_integrator *integrator, const stf_force *acting, stf_parallel parallel)
+{
+    stf_world *world = make_world((stf_world_def){.integrator = integrator, .step = STEP, .substeps = 2, .gravity = {1, -9, 2},
+                                                  .keep_previous = true, .parallel = parallel});
+    uint64_t seed = 6;
+
+    assert_ok(stf_world_reserve(world, MANY));
+    for (size_t i = 0; i < MANY; i++) {
+        const stf_particle particle = random_particle(3, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+    }
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.7});
+    if (acting)
+        add_force(world, acting, NULL);
+    return world;
+}
+
+static void assert_same_previous(const stf_world *a, const stf_world *b)
+{
+    static float of_a[3 * MANY], of_b[3 * MANY];
+
+    assert_ok(stf_world_copy_positions(a, 0, of_a, 0));
+    assert_ok(stf_world_copy_positions(b, 0, of_b, 0));
+    assert_memory_equal(of_a, of_b, sizeof of_a);
+}
+
+static void flight_of_many_blocks_changes_no_bit(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++) {
+        uint64_t seed = 1;
+        stf_world *flying = large_world(stf_integrators[k], NULL, (stf_parallel){.tasks = 0});
+        stf_world *split =
+            large_world(stf_integrators[k], NULL, (stf_parallel){.run = run_shuffled, .tasks = 3, .user = &seed});
+        stf_world *stepping = large_world(stf_integrators[k], &idle_field, (stf_parallel){.tasks = 0});
+
+        for (unsigned ticks = 1; ticks <= 2; ticks++) {
+            assert_ok(stf_world_step(flying, ticks));
+            assert_ok(stf_world_step(split, ticks));
+            assert_ok(stf_world_step(stepping, ticks));
+            assert_same_particles(flying, stepping);
+            assert_same_particles(split, stepping);
+        }
+        assert_true(seed != 1); /* it was split */
+        stf_world_destroy(flying);
+        stf_world_destroy(split);
+        stf_world_destroy(stepping);
+    }
+}
+
+/* Blocks that are stepped by themselves, under a force of time. */
+static void parts_of_loose_blocks_change_no_bit(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++)
+        for (unsigned tasks = 2; tasks <= 4; tasks++) {
+            uint64_t seed = 1;
+            const stf_parallel shuffled = {.run = run_shuffled, .tasks = tasks, .user = &seed};
+            stf_world *alone = large_world(stf_integrators[k], &time_force, (stf_parallel){.tasks = 0});
+            stf_world *split = large_world(stf_integrators[k], &time_force, shuffled);
+
+            assert_ok(stf_world_step(alone, 2));
+            assert_ok(stf_world_step(split, 2));
+            assert_true(seed != 1); /* it was split */
+            assert_same_particles(alone, split);
+            stf_world_destroy(alone);
+            stf_world_destroy(split);
+        }
+}
+
+/* Pushes every particle, whatever its part is: so says a link that does not say that it splits. */
+static void push_all(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)record_count, (void)time;
+    for (size_t i = 0; i < particles->count; i++)
+        particles->force[stf_particles_offset(particles, i)] += 1;
+}
+
+static void a_link_of_the_user_is_called_once_for_all_parts(void **state)
+{
+    (void)state;
+    static const stf_force pusher = {.name = "pusher", .kind = STF_LINK, .apply = push_all};
+    uint64_t seed = 1;
+    stf_world *world = make_world(
+        (stf_world_def){.step = 1, .parallel = {.run = run_shuffled, .tasks = 3, .user = &seed}});
+
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &pusher, NULL);
+    assert_ok(stf_world_step(world, 1));
+    assert_true(seed != 1); /* it was split */
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_true(particle_of(world, i).velocity.x == 1);
+    stf_world_destroy(world);
+}
+
+/* However a world is stepped, alpha 0 is where every particle was a tick ago. */
+static void previous_positions_are_those_of_the_tick_before(void **state)
+{
+    (void)state;
+    const stf_force *const acting[] = {NULL, &idle_field, &idle_link};
+    static float before[3 * MANY], previous[3 * MANY];
+
+    for (size_t f = 0; f < COUNT_OF(acting); f++)
+        for (unsigned tasks = 0; tasks <= 3; tasks += 3) {
+            uint64_t seed = 1;
+            const stf_parallel parallel = {.run = tasks ? run_shuffled : NULL, .tasks = tasks, .user = &seed};
+            stf_world *world = large_world(&stf_rk4, acting[f], parallel);
+            stf_world *behind = large_world(&stf_rk4, acting[f], parallel);
+
+            assert_ok(stf_world_step(world, 3));
+            assert_ok(stf_world_step(behind, 2));
+            assert_ok(stf_world_copy_positions(behind, 1, before, 0));
+            assert_ok(stf_world_copy_positions(world, 0, previous, 0));
+            assert_memory_equal(previous, before, sizeof previous);
+            assert_ok(stf_world_step(behind, 1));
+            assert_same_previous(world, behind);
+            stf_world_destroy(world);
+            stf_world_destroy(behind);
+        }
+}
+
+/* Springs as whole runs and loose, whose ends are in the same part and in two. */
+static stf_world *spring_world(unsigned dimensions, stf_parallel parallel)
+{
+    static const uint32_t steps[] = {1, 40, LARGEST / 2};
+    static stf_spring springs[(COUNT_OF(steps) + 1) * LARGEST];
+    stf_world *world = make_world((stf_world_def){.dimensions = dimensions, .step = STEP, .parallel = parallel});
+    uint64_t seed = dimensions;
+    size_t count = 0;
+
+    for (uint32_t i = 0; i < LARGEST; i++) {
+        const stf_particle particle = random_particle(dimensions, &seed);
+        assert_ok(stf_world_add(world, &particle, NULL));
+        for (size_t s = 0; s < COUNT_OF(steps); s++)
+            if (i + steps[s] < LARGEST)
+                springs[count++] = (stf_spring){.a = i, .b = i + steps[s]};
+        const uint32_t other = (uint32_t)(next_random(&seed) * LARGEST);
+        if (other != i)
+            springs[count++] = (stf_spring){.a = i, .b = other};
+    }
+    for (size_t s = 0; s < count; s++) {
+        springs[s].stiffness = (stf_real)next_random(&seed);
+        springs[s].damping = (stf_real)next_random(&seed);
+        springs[s].rest_length = (stf_real)next_random(&seed);
+    }
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+    return world;
+}
+
+static void parts_pull_each_end_of_a_spring_once(void **state)
+{
+    (void)state;
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (unsigned tasks = 2; tasks <= 7; tasks++) {
+            uint64_t seed = tasks;
+            stf_world *alone = spring_world(dimensions, (stf_parallel){.tasks = 0});
+            stf_world *split = spring_world(dimensions, (stf_parallel){.run = run_shuffled, .tasks = tasks, .user = &seed});
+
+            assert_ok(stf_world_step(alone, 2));
+            assert_ok(stf_world_step(split, 2));
+            assert_true(seed != tasks); /* it was split */
+            assert_same_particles(alone, split);
+            stf_world_destroy(alone);
+            stf_world_destroy(split);
+        }
+}
+
+/* The scratch that each part of a step was given, as the integrator below sees it. */
+#define SCRATCH_ARRAYS 2
+#define SCRATCH_PARTS 5
+static struct {
+    unsigned part;
+    const stf_real *begin[SCRATCH_PARTS * SCRATCH_ARRAYS], *end[SCRATCH_PARTS * SCRATCH_ARRAYS];
+} scratch;
+
+static void fill_scratch(stf_system *system, stf_real dt)
+{
+    for (size_t k = 0; k < SCRATCH_ARRAYS; k++) {
+        for (size_t i = 0; i < system->length; i++)
+            system->work[k][i] = dt;
+        scratch.begin[scratch.part * SCRATCH_ARRAYS + k] = system->work[k];
+        scratch.end[scratch.part * SCRATCH_ARRAYS + k] = system->work[k] + system->length;
+    }
+}
+
+static void run_and_say_which(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    (void)user;
+    assert_int_equal(tasks, SCRATCH_PARTS);
+    for (scratch.part = 0; scratch.part < tasks; scratch.part++)
+        task(context, scratch.part);
+}
+
+/* Parts may run at the same time, so no two may write to the same place; nor may they write over particles. */
+static void parts_have_scratch_of_their_own(void **state)
+{
+    (void)state;
+    const stf_integrator filler = {.name = "filler", .step = fill_scratch, .work_arrays = SCRATCH_ARRAYS};
+    const stf_parallel parallel = {.run = run_and_say_which, .tasks = SCRATCH_PARTS};
+    stf_world *world = large_world(&filler, NULL, parallel), *still = large_world(&filler, NULL, (stf_parallel){.tasks = 0});
+
+    memset(&scratch, 0, sizeof scratch);
+    assert_ok(stf_world_step(world, 1));
+    for (size_t a = 0; a < COUNT_OF(scratch.begin); a++) {
+        assert_non_null(scratch.begin[a]);
+        for (size_t b = 0; b < a; b++)
+            assert_true(scratch.end[a] <= scratch.begin[b] || scratch.end[b] <= scratch.begin[a]);
+    }
+    assert_same_particles(world, still);
+    stf_world_destroy(world);
+    stf_world_destroy(still);
+}
+
+static void run_and_count(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+    ++*(unsigned *)user;
+}
+
+/* A link that keeps to its part needs no other part to be done; for one that does not all fields come first, then all links. */
+static void links_of_the_library_run_within_the_parts(void **state)
+{
+    (void)state;
+    const stf_force *const links[] = {&stf_force_all_pairs_gravity, &stf_force_springs, &idle_link};
+    const stf_all_pairs_gravity gravity = {.gravitational_constant = 1, .softening = 1};
+    const stf_spring spring = {.a = 0, .b = LARGEST - 1, .stiffness = 1};
+    const void *const records[] = {&gravity, &spring, NULL};
+
+    for (size_t l = 0; l < COUNT_OF(links); l++) {
+        unsigned calls = 0;
+        stf_world *world =
+            make_world((stf_world_def){.step = STEP, .parallel = {.run = run_and_count, .tasks = 2, .user = &calls}});
+        const stf_particle particle = {.inverse_mass = 1};
+
+        for (size_t i = 0; i < LARGEST; i++)
+            assert_ok(stf_world_add(world, &particle, NULL));
+        add_force(world, links[l], records[l]);
+        assert_ok(stf_world_step(world, 1)); /* semi-implicit Euler: one acceleration */
+        assert_int_equal(calls, links[l]->splits ? 1 : 2);
+        assert_true(links[l]->splits == (links[l] != &idle_link));
+        stf_world_destroy(world);
+    }
+}
+
 /* An engine may hand out more tasks than there are blocks, or just one. */
 static void parts_are_never_more_than_blocks(void **state)
 {
@@ -534,6 +784,7 @@ static void assert_acceleration_is_what_a_step_adds(size_t count, bool tied)
         assert_ok(stf_world_add(world, &(stf_particle){.position = {wave * (stf_real)i, 1, 0},
                                                        .velocity = {1, (stf_real)i, wave},
                                                        .inverse_mass = (stf_real)(i % 3)}, NULL));
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.25});
     add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
     if (tied)
         add_force(world, &stf_force_springs, &(stf_spring){.a = 0, .b = (uint32_t)count - 1, .stiffness = 1});
@@ -575,6 +826,58 @@ static void accelerations_are_those_of_a_step_and_change_nothing(void **state)
     assert_refused(stf_world_accelerations(NULL, 0, NULL, NULL, NULL), STF_ERROR_NULL);
 }
 
+static void accelerations_are_of_the_time_that_is_asked_for(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1});
+    stf_real a[3 * STF_BLOCK_MAX];
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &time_force, NULL);
+    const stf_real *x = stf_world_view(world).position, *v = stf_world_view(world).velocity;
+    assert_ok(stf_world_accelerations(world, 0, x, v, a));
+    assert_true(a[0] == 1); /* cos 0 */
+    assert_ok(stf_world_accelerations(world, 1, x, v, a));
+    assert_close(a[0], 0.54030230586813977, REAL_EPSILON); /* cos 1 */
+    assert_refused(stf_world_accelerations(NULL, 0, x, v, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, NULL, v, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, x, NULL, a), STF_ERROR_NULL);
+    assert_refused(stf_world_accelerations(world, 0, x, v, NULL), STF_ERROR_NULL);
+    stf_world_destroy(world);
+}
+
+static void stand_still(stf_system *system, stf_real dt) { (void)system, (void)dt; }
+
+/* No particles and no arrays is no memory that is missed. */
+static void an_empty_world_of_an_integrator_without_arrays_steps(void **state)
+{
+    (void)state;
+    const stf_integrator still = {.name = "still", .step = stand_still};
+    stf_world *world = make_world((stf_world_def){.integrator = &still, .step = 1});
+
+    assert_ok(stf_world_step(world, 2));
+    assert_int_equal(stf_world_view(world).count, 0);
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {1, 2, 3}}, NULL));
+    assert_ok(stf_world_step(world, 2));
+    assert_true(particle_of(world, 0).position.z == 3);
+    stf_world_destroy(world);
+}
+
+/* More arrays need other memory, with as much room. */
+static void room_is_kept_where_the_integrator_changes(void **state)
+{
+    (void)state;
+    counting c = {0};
+    stf_world *world = make_world((stf_world_def){.capacity = LARGEST, .allocator = counting_allocator(&c)});
+
+    assert_ok(stf_world_set_integrator(world, &stf_rk4));
+    const size_t calls = c.calls;
+    for (size_t i = 0; i < LARGEST; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    assert_int_equal(c.calls, calls);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -583,6 +886,13 @@ int main(void)
         cmocka_unit_test(flight_changes_no_bit),
         cmocka_unit_test(user_drag_is_twice_its_record),
         cmocka_unit_test(parts_change_no_bit),
+        cmocka_unit_test(parts_pull_each_end_of_a_spring_once),
+        cmocka_unit_test(flight_of_many_blocks_changes_no_bit),
+        cmocka_unit_test(parts_of_loose_blocks_change_no_bit),
+        cmocka_unit_test(a_link_of_the_user_is_called_once_for_all_parts),
+        cmocka_unit_test(previous_positions_are_those_of_the_tick_before),
+        cmocka_unit_test(parts_have_scratch_of_their_own),
+        cmocka_unit_test(links_of_the_library_run_within_the_parts),
         cmocka_unit_test(parts_are_never_more_than_blocks),
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
         cmocka_unit_test(groups_of_ticks_change_no_bit),
@@ -593,6 +903,9 @@ int main(void)
         cmocka_unit_test(elements_of_no_particle_are_zero),
         cmocka_unit_test(an_integrator_finds_nothing_of_the_one_before),
         cmocka_unit_test(accelerations_are_those_of_a_step_and_change_nothing),
+        cmocka_unit_test(accelerations_are_of_the_time_that_is_asked_for),
+        cmocka_unit_test(an_empty_world_of_an_integrator_without_arrays_steps),
+        cmocka_unit_test(room_is_kept_where_the_integrator_changes),
     };
 
     return cmocka_run_group_tests_name("blocks, " REAL_NAME, tests, NULL, NULL);

@@ -262,6 +262,53 @@ static void springs_of_a_cloth_add_up(void **state)
     }
 }
 
+/* A chain is one run until an end of its springs leaves its block: one end does so before the other. */
+static void chains_across_blocks_add_up(void **state)
+{
+    (void)state;
+    static const uint32_t steps[] = {1, 7, STF_BLOCK_MAX - 1, STF_BLOCK_MAX, STF_BLOCK_MAX + 1};
+    static stf_spring springs[CLOTH];
+    static stf_particle particles[CLOTH];
+    static vector forces[CLOTH];
+
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (size_t k = 0; k < COUNT_OF(steps); k++) {
+            stf_world *world = random_world(dimensions, CLOTH);
+            size_t count = 0;
+
+            for (uint32_t i = 0; i + steps[k] < CLOTH; i++)
+                springs[count++] = (stf_spring){.a = i, .b = i + steps[k], .stiffness = 1, .damping = (stf_real)0.5};
+            memset(forces, 0, sizeof forces);
+            copy_particles(world, particles);
+            add_spring_forces(springs, count, particles, forces);
+            assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+            check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8); /* as above: two springs of k = 1, c = 0.5 */
+        }
+}
+
+/* The most pieces that so many springs can fall into: a shortest run and a loose spring in every block. */
+static void a_run_and_a_loose_spring_in_every_block_add_up(void **state)
+{
+    (void)state;
+    enum { SHORTEST_RUN = 16, BLOCKS = 9, ALL = BLOCKS * STF_BLOCK_MAX };
+    static stf_spring springs[BLOCKS * (SHORTEST_RUN + 1)];
+    static stf_particle particles[ALL];
+    static vector forces[ALL];
+    stf_world *world = random_world(3, ALL);
+    size_t count = 0;
+
+    for (uint32_t block = 0; block < BLOCKS; block++) {
+        const uint32_t first = block * STF_BLOCK_MAX;
+        for (uint32_t i = 0; i < SHORTEST_RUN; i++)
+            springs[count++] = (stf_spring){.a = first + i, .b = first + i + 1, .stiffness = 1, .damping = (stf_real)0.5};
+        springs[count++] = (stf_spring){.a = first, .b = first + 90, .stiffness = 1, .damping = (stf_real)0.5};
+    }
+    copy_particles(world, particles);
+    add_spring_forces(springs, count, particles, forces);
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+    check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8);
+}
+
 static void the_order_of_springs_changes_no_bit(void **state)
 {
     (void)state;
@@ -284,6 +331,34 @@ static void the_order_of_springs_changes_no_bit(void **state)
         }
         stf_world_destroy(world);
     }
+}
+
+/* The sum of forces is rounded in the order of the records: also that of springs of the same ends. */
+static void springs_of_the_same_ends_are_kept_in_one_order(void **state)
+{
+    (void)state;
+    enum { TWINS = 5 };
+    stf_spring springs[TWINS], first[TWINS];
+    stf_world *world = random_world(3, 2);
+    stf_force_id id;
+    size_t count;
+    uint64_t seed = 4;
+
+    for (size_t s = 0; s < TWINS; s++) /* pairs that differ in one field each, the last in none */
+        springs[s] = (stf_spring){.a = 0, .b = 1, .stiffness = s == 0, .damping = s == 1, .rest_length = s == 2};
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, TWINS, &id));
+    memcpy(first, stf_world_force_records(world, id, &count), sizeof first);
+    for (int round = 0; round < 50; round++) {
+        for (size_t s = TWINS - 1; s > 0; s--) {
+            const size_t other = (size_t)(next_random(&seed) * (double)(s + 1));
+            const stf_spring kept = springs[s];
+            springs[s] = springs[other];
+            springs[other] = kept;
+        }
+        assert_ok(stf_world_set_force(world, id, springs, TWINS));
+        assert_memory_equal(stf_world_force_records(world, id, &count), first, sizeof first);
+    }
+    stf_world_destroy(world);
 }
 
 /* Springs keep their order through removals, so that a world that lost particles is as one that never had them. */
@@ -365,6 +440,38 @@ static void all_pairs_gravity_is_the_sum_over_all_others(void **state)
         /* 300 terms of at most G m 2 / (3 sqrt(3) e^2) = 0.4 each, rounded as their sum grows. */
         check_forces(world, p, f, 300 * 0.4 * 8);
     }
+}
+
+/* Two records of one force push as one record each of two. */
+static void every_record_of_a_force_counts(void **state)
+{
+    (void)state;
+    const stf_linear_drag linear[] = {{(stf_real)0.5}, {(stf_real)0.3}};
+    const stf_quadratic_drag quadratic[] = {{(stf_real)0.5}, {(stf_real)0.3}};
+    const stf_attractor attractors[] = {{.strength = 2, .softening = 1},
+                                        {.position = {1, 0, 0}, .strength = 3, .softening = 1}};
+    const stf_all_pairs_gravity gravity[] = {{1, 1}, {(stf_real)0.3, 2}};
+    const stf_force *const forces[] = {&stf_force_linear_drag, &stf_force_quadratic_drag, &stf_force_attractor,
+                                       &stf_force_all_pairs_gravity};
+    const void *const records[][2] = {
+        {&linear[0], &linear[1]}, {&quadratic[0], &quadratic[1]}, {&attractors[0], &attractors[1]}, {&gravity[0], &gravity[1]}};
+
+    for (unsigned dimensions = 1; dimensions <= 3; dimensions++)
+        for (size_t k = 0; k < COUNT_OF(forces); k++) {
+            stf_world *one = random_world(dimensions, COUNT), *two = random_world(dimensions, COUNT);
+
+            assert_ok(stf_world_add_force(one, forces[k], records[k][0], 2, NULL));
+            add_force(two, forces[k], records[k][0]);
+            add_force(two, forces[k], records[k][1]);
+            assert_ok(stf_world_step(one, 1));
+            assert_ok(stf_world_step(two, 1));
+            for (size_t i = 0; i < COUNT; i++) {
+                const stf_particle a = particle_of(one, i), b = particle_of(two, i);
+                assert_memory_equal(&a, &b, sizeof a);
+            }
+            stf_world_destroy(one);
+            stf_world_destroy(two);
+        }
 }
 
 /* Where a formula has no value the force is 0, and the state stays finite. */
@@ -631,10 +738,14 @@ int main(void)
         cmocka_unit_test(attractors_pull_by_the_inverse_square),
         cmocka_unit_test(springs_pull_both_ends_alike),
         cmocka_unit_test(springs_of_a_cloth_add_up),
+        cmocka_unit_test(chains_across_blocks_add_up),
+        cmocka_unit_test(a_run_and_a_loose_spring_in_every_block_add_up),
         cmocka_unit_test(the_order_of_springs_changes_no_bit),
+        cmocka_unit_test(springs_of_the_same_ends_are_kept_in_one_order),
         cmocka_unit_test(removals_leave_springs_in_order),
         cmocka_unit_test(anchored_springs_pull_to_their_anchors_in_any_order),
         cmocka_unit_test(all_pairs_gravity_is_the_sum_over_all_others),
+        cmocka_unit_test(every_record_of_a_force_counts),
         cmocka_unit_test(coincidence_pulls_nowhere),
         cmocka_unit_test(forces_at_rest_are_minus_the_gradient_of_the_potential),
         cmocka_unit_test(potentials_count_every_block_once),

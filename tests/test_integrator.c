@@ -240,6 +240,14 @@ static void list_is_found_by_name_and_complete(void **state)
     assert_null(stf_integrator_find(NULL));
 }
 
+/* Else its free flight would be the slow kind, with the same bits. */
+static void every_integrator_of_the_library_has_a_flight(void **state)
+{
+    (void)state;
+    for (int k = 0; stf_integrators[k]; k++)
+        assert_true(stf_integrators[k]->step_flight != NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -249,6 +257,7 @@ int main(void)
         cmocka_unit_test(position_verlet_is_stormers_recursion),
         cmocka_unit_test(evaluations_a_step_are_as_the_descriptor_says),
         cmocka_unit_test(history_is_used_unless_it_is_stale),
+        cmocka_unit_test(every_integrator_of_the_library_has_a_flight),
         cmocka_unit_test(list_is_found_by_name_and_complete),
     };
 

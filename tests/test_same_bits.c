@@ -96,6 +96,37 @@ static void every_instruction_set_gives_the_same_bits(void **state)
         assert_true(hashes[i] == hashes[0]);
 }
 
+static bool is_given(const char *wanted, const char *expected)
+{
+    assert_int_equal(setenv("STEADFAST_ISA", wanted, 1), 0);
+    stf_world *world = make_world((stf_world_def){.step = 1});
+    const bool is_expected = strcmp(stf_world_isa(world), expected) == 0;
+    stf_world_destroy(world);
+    return is_expected;
+}
+
+/* Every machine runs the baseline, and what runs the widest set runs all below it. An unknown name is as none. */
+static void the_instruction_set_that_is_asked_for_is_given(void **state)
+{
+    (void)state;
+    const char *given = getenv("STEADFAST_ISA");
+    char *before = given ? strcpy(malloc(strlen(given) + 1), given) : NULL;
+
+    assert_int_equal(unsetenv("STEADFAST_ISA"), 0);
+    stf_world *world = make_world((stf_world_def){.step = 1});
+    const char *widest = stf_world_isa(world);
+    stf_world_destroy(world);
+
+    assert_true(is_given("baseline", "baseline"));
+    assert_true(is_given(widest, widest));
+    assert_true(is_given("avx512", widest));
+    assert_true(is_given("avx2", strcmp(widest, "avx512") == 0 ? "avx2" : widest));
+    assert_true(is_given("no such set", widest));
+    assert_true(is_given("", widest));
+    assert_int_equal(before ? setenv("STEADFAST_ISA", before, 1) : unsetenv("STEADFAST_ISA"), 0);
+    free(before);
+}
+
 /* The last part first: no part may need another. */
 static void run_backwards(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
 {
@@ -122,6 +153,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_scene_and_integrator_gives_the_bits_it_always_gave),
         cmocka_unit_test(every_instruction_set_gives_the_same_bits),
+        cmocka_unit_test(the_instruction_set_that_is_asked_for_is_given),
         cmocka_unit_test(every_number_of_parts_gives_the_same_bits),
     };
 

@@ -439,6 +439,56 @@ static void without_memory_calls_fail_and_change_nothing_they_did_not_do(void **
         }
 }
 
+/* Hands out another allocator's memory until it is told to refuse; then it notes the least that it was asked for. */
+typedef struct shortage {
+    stf_allocator lender;
+    bool refuses;
+    size_t least; /* bytes */
+} shortage;
+
+static void *lend(void *user, size_t size, size_t alignment)
+{
+    shortage *s = user;
+
+    if (!s->refuses)
+        return s->lender.allocate(s->lender.user, size, alignment);
+    if (size < s->least)
+        s->least = size;
+    return NULL;
+}
+
+static void give_back(void *user, void *memory, size_t size)
+{
+    const shortage *s = user;
+    s->lender.release(s->lender.user, memory, size);
+}
+
+/* With every array that a world may have, at the very capacities whose bytes are about as many as a size_t counts. */
+static void no_room_is_asked_for_whose_bytes_wrap_round(void **state)
+{
+    (void)state;
+    enum { ROWS = 3 * (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX) + 2 };
+    const stf_integrator greedy = {.name = "greedy",
+                                   .step = stf_rk4.step,
+                                   .work_arrays = STF_WORK_ARRAYS_MAX,
+                                   .history_arrays = STF_HISTORY_ARRAYS_MAX};
+    const size_t limit = SIZE_MAX / sizeof(stf_real) / ROWS;
+    counting c = {0};
+    shortage s = {.lender = counting_allocator(&c), .least = SIZE_MAX};
+    stf_world *world = make_world((stf_world_def){.integrator = &greedy,
+                                                  .keep_previous = true,
+                                                  .keep_radius = true,
+                                                  .allocator = {.allocate = lend, .release = give_back, .user = &s}});
+
+    add_force(world, &idle_link, NULL);
+    s.refuses = true;
+    for (size_t capacity = limit - 2000; capacity <= limit + 2000; capacity++)
+        assert_refused(stf_world_reserve(world, capacity), STF_ERROR_MEMORY);
+    assert_true(s.least > SIZE_MAX / 2);
+    stf_world_destroy(world);
+    assert_int_equal(c.blocks, 0);
+}
+
 static void without_memory_no_world_is_made(void **state)
 {
     (void)state;
@@ -496,6 +546,154 @@ static void forces_see_the_time_of_their_stage(void **state)
     assert_true(times[0] == COUNT_OF(expected));
     for (size_t i = 0; i < COUNT_OF(expected); i++)
         assert_true(times[1 + i] == expected[i]);
+    stf_world_destroy(world);
+}
+
+/* Ticks count on where the step changes, and time with them: for fields as for links. */
+static void forces_see_the_time_that_the_world_says_after_a_change_of_step(void **state)
+{
+    (void)state;
+    const double expected[] = {0, 0.5, 1, 1.25, 1.5};
+
+    for (int link = 0; link < 2; link++) {
+        const stf_force noter = {.name = "noter",
+                                 .kind = link ? STF_LINK : STF_FIELD,
+                                 .record_size = sizeof(double *),
+                                 .apply = note_time};
+        double times[TIMES] = {0}, *at = times;
+        stf_world *world = make_world((stf_world_def){.integrator = &stf_explicit_euler, .step = 0.5});
+
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+        add_force(world, &noter, &at);
+        assert_ok(stf_world_step(world, 2));
+        assert_ok(stf_world_set_step(world, 0.25));
+        assert_ok(stf_world_step(world, 2));
+        assert_ok(stf_world_step(world, 1));
+        assert_true(times[0] == COUNT_OF(expected));
+        for (size_t i = 0; i < COUNT_OF(expected); i++)
+            assert_true(times[1 + i] == expected[i]);
+        assert_true(stf_world_time(world) == 1.75);
+        stf_world_destroy(world);
+    }
+}
+
+/* More than a block, of particles that all differ. */
+#define CROWD (2 * (size_t)STF_BLOCK_MAX + 5)
+
+static stf_world *crowd(const stf_integrator *integrator, counting *memory)
+{
+    stf_world *world = make_world((stf_world_def){
+        .integrator = integrator, .step = 1.0 / 8, .gravity = {0, -2, 1}, .allocator = counting_allocator(memory)});
+
+    for (size_t i = 0; i < CROWD; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 1, -(stf_real)i},
+                                                       .velocity = {1, (stf_real)i, 2},
+                                                       .inverse_mass = (stf_real)(i % 3)}, NULL));
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){(stf_real)0.1});
+    add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
+    return world;
+}
+
+/* Whatever integrator was there before, with history or without, in memory full of garbage. */
+static void an_integrator_goes_on_as_if_it_had_started_there(void **state)
+{
+    (void)state;
+    for (int from = 0; stf_integrators[from]; from++)
+        for (int to = 0; stf_integrators[to]; to++) {
+            counting c = {0}, d = {0};
+            stf_world *changed = crowd(stf_integrators[from], &c), *fresh = crowd(stf_integrators[to], &d);
+
+            if (from != to) {
+                assert_ok(stf_world_step(changed, 3));
+                for (size_t i = 0; i < CROWD; i++) {
+                    const stf_particle particle = particle_of(changed, i);
+                    assert_ok(stf_world_set(fresh, i, &particle));
+                }
+                assert_ok(stf_world_set_integrator(changed, stf_integrators[to]));
+                assert_ok(stf_world_step(changed, 3));
+                assert_ok(stf_world_step(fresh, 3));
+            }
+            for (size_t i = 0; i < CROWD; i++) {
+                const stf_particle p = particle_of(changed, i), q = particle_of(fresh, i);
+                assert_memory_equal(&p, &q, sizeof p);
+            }
+            stf_world_destroy(changed);
+            stf_world_destroy(fresh);
+        }
+}
+
+/* Adds up the velocity once in one history and twice in the other, and shows both. */
+static void sum_twice(stf_system *system, stf_real dt)
+{
+    (void)dt;
+    for (size_t i = 0; i < system->length; i++) {
+        stf_real *once = &system->history[0][i], *twice = &system->history[1][i];
+        *once = (*once == *once ? *once : 0) + system->velocity[i];
+        *twice = (*twice == *twice ? *twice : 0) + 2 * system->velocity[i];
+        system->position[i] = *once + 1000 * *twice;
+    }
+}
+
+static void every_history_moves_with_its_particles(void **state)
+{
+    (void)state;
+    const stf_integrator summing = {.name = "summing", .step = sum_twice, .history_arrays = 2};
+    stf_world *world = make_world((stf_world_def){.integrator = &summing, .step = 1});
+
+    for (int i = 0; i < 10; i++)
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 2, (stf_real)i}}, NULL));
+    assert_ok(stf_world_step(world, 2));
+    assert_ok(stf_world_reserve(world, 20)); /* into wider rows */
+    assert_ok(stf_world_reserve(world, CROWD)); /* and into more blocks */
+    assert_ok(stf_world_reserve(world, 2 * CROWD));
+    assert_ok(stf_world_remove(world, 0, NULL));
+    assert_ok(stf_world_step(world, 1));
+    for (size_t i = 0; i < 9; i++) { /* 3 steps: 3 v and 6 v */
+        const stf_vector x = particle_of(world, i).position;
+        assert_true(x.x == 6003 && x.y == 2 * 6003 && x.z == 6003 * (stf_real)(i == 0 ? 9 : i));
+    }
+    stf_world_destroy(world);
+}
+
+/* The smallest and the largest that is no error, alone, in a lot and set. */
+static void masses_and_radii_are_taken_up_to_their_limits(void **state)
+{
+    (void)state;
+    const stf_real least = sizeof(stf_real) == sizeof(float) ? (stf_real)FLT_MIN : (stf_real)DBL_MIN;
+    const stf_particle edge[] = {{.inverse_mass = least, .radius = (stf_real)REAL_MAX},
+                                 {.inverse_mass = (stf_real)REAL_MAX, .radius = least}};
+    stf_world *world = make_world((stf_world_def){.keep_radius = true});
+
+    assert_ok(stf_world_add_many(world, edge, COUNT_OF(edge), NULL));
+    for (size_t i = 0; i < COUNT_OF(edge); i++) {
+        assert_ok(stf_world_add(world, &edge[i], NULL));
+        assert_ok(stf_world_set(world, 0, &edge[i]));
+        assert_true(particle_of(world, 0).inverse_mass == edge[i].inverse_mass);
+        assert_true(particle_of(world, 0).radius == edge[i].radius);
+    }
+    stf_world_destroy(world);
+}
+
+/* Through growth from a small block to whole ones, a removal and a set; each particle its own. */
+static void radii_are_kept_where_the_def_asks_for_them(void **state)
+{
+    (void)state;
+    enum { FEW = 10, ALL = 2 * STF_BLOCK_MAX + 5 };
+    static stf_particle lot[ALL];
+    stf_world *world = make_world((stf_world_def){.keep_radius = true});
+    const size_t last = ALL - 1;
+
+    for (size_t i = 0; i < ALL; i++)
+        lot[i] = (stf_particle){.inverse_mass = 1, .radius = (stf_real)(i + 1)};
+    assert_ok(stf_world_add_many(world, lot, FEW, NULL));
+    assert_ok(stf_world_add_many(world, lot + FEW, ALL - FEW, NULL));
+    assert_ok(stf_world_reserve(world, 2 * ALL));
+    for (size_t i = 0; i < ALL; i++)
+        assert_true(particle_of(world, i).radius == (stf_real)(i + 1));
+    assert_ok(stf_world_set(world, 7, &(stf_particle){.radius = (stf_real)0.5}));
+    assert_ok(stf_world_remove(world, 3, NULL));
+    assert_true(particle_of(world, 7).radius == (stf_real)0.5 && particle_of(world, 3).radius == (stf_real)(last + 1));
+    assert_true(particle_of(world, 6).radius == 7 && particle_of(world, 8).radius == 9);
     stf_world_destroy(world);
 }
 
@@ -967,6 +1165,23 @@ static void many_small_lots_move_the_world_seldom(void **state)
     stf_world_destroy(once);
 }
 
+/* A world that has no particles yet has nothing to grow from, whatever was reserved. */
+static void room_for_a_first_lot_is_exact(void **state)
+{
+    (void)state;
+    enum { RESERVED = 90000, LOT = 100000 };
+    counting c = {0};
+    stf_world *world = make_world((stf_world_def){.dimensions = 1, .allocator = counting_allocator(&c)});
+    stf_particle *lot = calloc(LOT, sizeof *lot);
+
+    assert_non_null(lot);
+    assert_ok(stf_world_reserve(world, RESERVED));
+    assert_ok(stf_world_add_many(world, lot, LOT, NULL));
+    assert_true(c.bytes < LOT * 4 * sizeof(stf_real)); /* state, inverse mass, and no more than a block to work in */
+    free(lot);
+    stf_world_destroy(world);
+}
+
 static void forces_without_records_sleep(void **state)
 {
     (void)state;
@@ -1160,9 +1375,15 @@ int main(void)
         cmocka_unit_test(all_memory_comes_from_the_allocator_and_goes_back),
         cmocka_unit_test(steps_and_questions_allocate_nothing),
         cmocka_unit_test(without_memory_calls_fail_and_change_nothing_they_did_not_do),
+        cmocka_unit_test(no_room_is_asked_for_whose_bytes_wrap_round),
         cmocka_unit_test(without_memory_no_world_is_made),
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
+        cmocka_unit_test(forces_see_the_time_that_the_world_says_after_a_change_of_step),
+        cmocka_unit_test(an_integrator_goes_on_as_if_it_had_started_there),
+        cmocka_unit_test(every_history_moves_with_its_particles),
+        cmocka_unit_test(masses_and_radii_are_taken_up_to_their_limits),
+        cmocka_unit_test(radii_are_kept_where_the_def_asks_for_them),
         cmocka_unit_test(positions_are_copied_out_blended_and_strided),
         cmocka_unit_test(energy_and_momentum_are_their_sums),
         cmocka_unit_test(immovable_particles_have_no_gravitational_energy),
@@ -1180,6 +1401,7 @@ int main(void)
         cmocka_unit_test(a_moved_particle_goes_on_as_if_alone),
         cmocka_unit_test(only_a_new_position_is_a_teleport),
         cmocka_unit_test(many_small_lots_move_the_world_seldom),
+        cmocka_unit_test(room_for_a_first_lot_is_exact),
         cmocka_unit_test(forces_without_records_sleep),
         cmocka_unit_test(attraction_reaches_to_the_edge_of_the_reals),
         cmocka_unit_test(known_integrators_and_records_take_no_more_memory),

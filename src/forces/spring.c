@@ -238,13 +238,13 @@ static void apply_run(size_t n, const run *r)
 typedef struct batch {
     size_t a[BATCH], b[BATCH]; /* where their ends stand */
     stf_real d[STF_DIMENSIONS_MAX][BATCH], square[BATCH], w_dot_d[BATCH];
-    stf_real stiffness[BATCH], damping[BATCH], rest_length[BATCH];
+    stf_real stiffness[BATCH], damping[BATCH], rest_length[BATCH], factor[BATCH];
 } batch;
 
-static void batch_factors(size_t n, stf_real *restrict factor, const batch *restrict g)
+static void batch_factors(size_t n, batch *g)
 {
     for (size_t i = 0; i < n; i++)
-        factor[i] = stf_spring_factor(g->square[i], g->w_dot_d[i], g->stiffness[i], g->damping[i], g->rest_length[i]);
+        g->factor[i] = stf_spring_factor(g->square[i], g->w_dot_d[i], g->stiffness[i], g->damping[i], g->rest_length[i]);
 }
 
 /* `all_mine` is a constant at each call as well: of a world that is not split every end is. */
@@ -252,7 +252,6 @@ STF_INLINE void apply_batch(unsigned dimensions, bool all_mine, size_t n, const 
 {
     const stf_real *x = all->position, *v = all->velocity;
     const size_t stride = all->stride;
-    stf_real factor[BATCH];
     batch g;
 
     for (size_t i = 0; i < n; i++) {
@@ -269,14 +268,14 @@ STF_INLINE void apply_batch(unsigned dimensions, bool all_mine, size_t n, const 
         g.a[i] = a, g.b[i] = b, g.square[i] = square, g.w_dot_d[i] = w_dot_d;
         g.stiffness[i] = s->stiffness, g.damping[i] = s->damping, g.rest_length[i] = s->rest_length;
     }
-    batch_factors(n, factor, &g);
+    batch_factors(n, &g);
     for (size_t i = 0; i < n; i++) {
         const bool a_is_mine = all_mine || is_mine(all, loose[i].a), b_is_mine = all_mine || is_mine(all, loose[i].b);
 
         for (unsigned k = 0; k < dimensions && a_is_mine; k++)
-            all->force[g.a[i] + k * stride] -= factor[i] * g.d[k][i];
+            all->force[g.a[i] + k * stride] -= g.factor[i] * g.d[k][i];
         for (unsigned k = 0; k < dimensions && b_is_mine; k++)
-            all->force[g.b[i] + k * stride] += factor[i] * g.d[k][i];
+            all->force[g.b[i] + k * stride] += g.factor[i] * g.d[k][i];
     }
 }
 

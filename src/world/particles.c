@@ -103,9 +103,10 @@ static bool are_sound(const stf_world *world, size_t n, const stf_particle *part
         bad |= (w != 0) & !(w >= STF_REAL_MIN);
         bad |= !((radius >= 0) & (radius <= radius_max));
     }
-    for (size_t i = 0; i < n && world->dimensions < STF_DIMENSIONS_MAX; i++)
-        bad |= !stf_vector_fits(particles[i].position, world->dimensions) |
-               !stf_vector_fits(particles[i].velocity, world->dimensions);
+    for (size_t i = 0; i < n && world->dimensions < STF_DIMENSIONS_MAX; i++) {
+        bad |= !stf_vector_fits(particles[i].position, world->dimensions);
+        bad |= !stf_vector_fits(particles[i].velocity, world->dimensions);
+    }
     return !bad;
 }
 
