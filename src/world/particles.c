@@ -254,15 +254,8 @@ stf_result stf_world_clear(stf_world *world)
     if (!world)
         return STF_ERROR_NULL;
 
-    const size_t lanes = stf_world_blocks(world) * world->storage.stride;
-    const stf_storage *storage = &world->storage;
-
-    memset(storage->position, 0, lanes * world->dimensions * sizeof(stf_real));
-    memset(storage->velocity, 0, lanes * world->dimensions * sizeof(stf_real));
-    memset(storage->inverse_mass, 0, lanes * sizeof(stf_real));
-    stf_world_clear_history(world);
     stf_world_drop_particle_records(world);
-    world->count = 0;
+    world->count = 0; /* blocks are set to 0 when they get particles again */
     return STF_OK;
 }
 
