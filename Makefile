@@ -28,7 +28,7 @@ TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
 
 # The hot files once more for each instruction set that the compiler has; the world picks one at run time (src/variant.h).
-HOT_SOURCES  := src/kernels.c $(filter-out %/list.c,$(wildcard src/integrators/*.c)) $(wildcard src/forces/*.c)
+HOT_SOURCES  := src/kernels.c $(wildcard src/integrators/*.c src/forces/*.c)
 FLAGS_avx2   := -mavx2
 FLAGS_avx512 := -mavx512f -mavx512vl -mavx512bw -mavx512dq -mprefer-vector-width=512
 has           = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo yes)

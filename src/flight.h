@@ -9,18 +9,18 @@
 #include "steadfast/integrator.h"
 
 /* What is constant over a step for one element: 0 for the immovable. */
-typedef struct stf_free {
+typedef struct stf_fall {
     stf_real gravity; /* m/s^2 */
     stf_real rate;    /* k / m, 1/s */
-} stf_free;
+} stf_fall;
 
-static inline stf_free stf_free_of(stf_real gravity, stf_real drag, stf_real inverse_mass)
+static inline stf_fall stf_fall_of(stf_real gravity, stf_real drag, stf_real inverse_mass)
 {
-    return (stf_free){.gravity = inverse_mass > 0 ? gravity : 0, .rate = drag * inverse_mass};
+    return (stf_fall){.gravity = inverse_mass > 0 ? gravity : 0, .rate = drag * inverse_mass};
 }
 
 /* a = g - (k / m) v */
-static inline stf_real stf_free_acceleration(stf_free f, stf_real v) { return f.gravity - f.rate * v; }
+static inline stf_real stf_fall_acceleration(stf_fall f, stf_real v) { return f.gravity - f.rate * v; }
 
 /* One element of a flight: what an integrator steps. */
 typedef struct stf_element {
@@ -28,10 +28,7 @@ typedef struct stf_element {
     stf_real history; /* of integrators that have any */
 } stf_element;
 
-/* Every row is a multiple of this. A loop that the compiler sees to be one needs no loop for the rest. */
-#define STF_ROW_MULTIPLE ((size_t)16)
-
-typedef void stf_element_step(stf_element *element, stf_free free, stf_real dt);
+typedef void stf_element_step(stf_element *element, stf_fall fall, stf_real dt);
 
 /*
  * Steps every element of a flight, row by row. `step` and `has_history` are constants at each call, so the compiler writes them
@@ -45,23 +42,26 @@ STF_INLINE void stf_flight_rows(const stf_flight *flight, stf_real *restrict x, 
     const stf_real drag = flight->drag;
 
     for (size_t b = 0; b < flight->blocks; b++, inverse_mass += lanes)
-        for (unsigned d = 0; d < flight->dimensions; d++, x += lanes, v += lanes, history += has_history ? lanes : 0) {
+        for (unsigned d = 0; d < flight->dimensions; d++, x += lanes, v += lanes) {
             const stf_real gravity = flight->gravity[d];
 
             for (size_t i = 0; i < lanes; i++) {
                 stf_element e = {.x = x[i], .v = v[i], .history = has_history ? history[i] : 0};
-                step(&e, stf_free_of(gravity, drag, inverse_mass[i]), dt);
+                step(&e, stf_fall_of(gravity, drag, inverse_mass[i]), dt);
                 x[i] = e.x;
                 v[i] = e.v;
                 if (has_history)
                     history[i] = e.history;
             }
+            if (has_history)
+                history += lanes;
         }
 }
 
 STF_INLINE void stf_fly(const stf_flight *flight, stf_real dt, bool has_history, stf_element_step *step)
 {
-    stf_flight_rows(flight, flight->position, flight->velocity, flight->history[0], flight->inverse_mass, dt, has_history, step);
+    stf_flight_rows(flight, flight->position, flight->velocity, flight->history[0], flight->inverse_mass, dt, has_history,
+                    step);
 }
 
 #endif

@@ -47,7 +47,7 @@ const stf_kernels *stf_kernels_choose(void)
 
 const stf_integrator *stf_kernels_integrator(const stf_kernels *kernels, const stf_integrator *integrator)
 {
-    for (size_t i = 0; i < STF_KERNEL_INTEGRATORS; i++)
+    for (size_t i = 0; kernels->integrators[i]; i++)
         if (stf_kernels_baseline.integrators[i] == integrator)
             return kernels->integrators[i];
     return integrator;
@@ -55,7 +55,7 @@ const stf_integrator *stf_kernels_integrator(const stf_kernels *kernels, const s
 
 const stf_force *stf_kernels_force(const stf_kernels *kernels, const stf_force *force)
 {
-    for (size_t i = 0; i < STF_KERNEL_FORCES; i++)
+    for (size_t i = 0; kernels->forces[i]; i++)
         if (stf_kernels_baseline.forces[i] == force)
             return kernels->forces[i];
     return force;

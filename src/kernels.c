@@ -14,8 +14,8 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
 
             for (size_t i = 0; i < lanes; i++) {
                 const stf_real w = inverse_mass[i];
-                const stf_free free = {.gravity = gravity, .rate = drag * w}; /* one condition a lane: gcc wants no two */
-                const stf_real pushed = stf_free_acceleration(free, v[i]) + a[i] * w;
+                const stf_fall fall = {.gravity = gravity, .rate = drag * w}; /* one condition a lane: gcc wants no two */
+                const stf_real pushed = stf_fall_acceleration(fall, v[i]) + a[i] * w;
                 a[i] = w > 0 ? pushed : 0;
             }
         }
@@ -33,11 +33,9 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
 #define TEXT TEXT_OF(STF_VARIANT)
 #endif
 
-const stf_kernels NAME = {
-    .name = TEXT,
-    .integrators = {&stf_explicit_euler, &stf_semi_implicit_euler, &stf_midpoint, &stf_improved_euler, &stf_rk4,
-                    &stf_position_verlet, &stf_velocity_verlet},
-    .forces = {&stf_force_linear_drag, &stf_force_quadratic_drag, &stf_force_attractor, &stf_force_anchored_springs,
-               &stf_force_springs, &stf_force_all_pairs_gravity},
-    .accelerate = accelerate,
+static const stf_force *const forces[] = {
+    &stf_force_linear_drag, &stf_force_quadratic_drag, &stf_force_attractor, &stf_force_anchored_springs,
+    &stf_force_springs,     &stf_force_all_pairs_gravity, NULL,
 };
+
+const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate};

@@ -16,14 +16,11 @@
 #define stf_kernels_force stf_kernels_force_f64
 #endif
 
-#define STF_KERNEL_INTEGRATORS 7
-#define STF_KERNEL_FORCES 6
-
-/* What one instruction set has. The same place in two sets is the same integrator or force; the baseline's are the public ones. */
+/* What one instruction set has. The same place in two sets is the same integrator or force; the baseline's are public. */
 typedef struct stf_kernels {
     const char *name;
-    const stf_integrator *integrators[STF_KERNEL_INTEGRATORS];
-    const stf_force *forces[STF_KERNEL_FORCES];
+    const stf_integrator *const *integrators; /* NULL-terminated, as stf_integrators */
+    const stf_force *const *forces;           /* NULL-terminated */
 
     /* a = gravity - (drag / m) v + F / m, 0 for the immovable, of so many blocks. `a` holds F and gets a. */
     void (*accelerate)(const stf_flight *flight, size_t blocks, const stf_real *inverse_mass, const stf_real *velocity,

@@ -25,6 +25,12 @@ static inline stf_real stf_sqrt(stf_real x) { return sqrt(x); }
 static inline stf_real stf_sqrt(stf_real x) { return sqrtf(x); }
 #endif
 
+/*
+ * Rows of blocks are multiples of so many reals, a cache line of floats. A loop that the compiler sees to be one needs no loop
+ * for a rest; shorter runs of springs are not worth a vector, and sums over lanes are made in as many places.
+ */
+#define STF_ROW_MULTIPLE ((size_t)16)
+
 static inline bool stf_vector_is_finite(stf_vector v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
 /* Whether v is 0 in the dimensions that a world of `dimensions` lacks. */

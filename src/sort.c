@@ -14,41 +14,48 @@ typedef struct sorting {
 
 static char *at(const sorting *s, size_t i) { return s->records + i * s->size; }
 
+/* Room for one record, aligned for whatever it holds. */
+typedef union room {
+    char bytes[STF_SORT_BYTES_MAX];
+    double number;
+    void *pointer;
+} room;
+
 /* Restores the heap below `root`: no record is less than its children. */
 static void sift_down(const sorting *s, size_t root, size_t count)
 {
-    char sifted[STF_SORT_BYTES_MAX];
+    room sifted;
 
-    memcpy(sifted, at(s, root), s->size);
+    memcpy(&sifted, at(s, root), s->size);
     for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
         if (child + 1 < count && s->compare(at(s, child), at(s, child + 1)) < 0)
             child++;
-        if (s->compare(sifted, at(s, child)) >= 0)
+        if (s->compare(&sifted, at(s, child)) >= 0)
             break;
         memcpy(at(s, root), at(s, child), s->size);
         root = child;
     }
-    memcpy(at(s, root), sifted, s->size);
+    memcpy(at(s, root), &sifted, s->size);
 }
 
 /* Heapsort: J. W. J. Williams, Comm. ACM 7, 347 (1964). */
 static void heapsort(const sorting *s)
 {
-    char largest[STF_SORT_BYTES_MAX];
+    room largest;
 
     for (size_t root = s->count / 2; root-- > 0;)
         sift_down(s, root, s->count);
     for (size_t end = s->count; end-- > 1;) {
-        memcpy(largest, at(s, 0), s->size);
+        memcpy(&largest, at(s, 0), s->size);
         memcpy(at(s, 0), at(s, end), s->size);
-        memcpy(at(s, end), largest, s->size);
+        memcpy(at(s, end), &largest, s->size);
         sift_down(s, 0, end);
     }
 }
 
 /*
- * Takes records out until the rest, which moves together, is in order; of two that are not, the one that fits worse. Returns how
- * many it took, FEW at most. If the rest is still not in order, *rest_sorted is false.
+ * Takes records out until the rest, which moves together, is in order; of two that are not, the one that fits worse. Returns
+ * how many it took, FEW at most. If the rest is still not in order, *rest_sorted is false.
  */
 static size_t take_out(const sorting *s, const sorting *taken, bool *rest_sorted)
 {
@@ -89,8 +96,8 @@ static void put_back(const sorting *s, const sorting *taken)
 void stf_sort(void *records, size_t count, size_t size, int (*compare)(const void *a, const void *b))
 {
     const sorting all = {.records = records, .count = count, .size = size, .compare = compare};
-    char memory[FEW * STF_SORT_BYTES_MAX];
-    sorting taken = {.records = memory, .size = size, .compare = compare};
+    room memory[FEW];
+    sorting taken = {.records = memory[0].bytes, .size = size, .compare = compare};
     bool rest_sorted;
 
     taken.count = take_out(&all, &taken, &rest_sorted);

@@ -28,6 +28,8 @@
 #undef stf_rk4
 #undef stf_position_verlet
 #undef stf_velocity_verlet
+#undef stf_integrators
+#undef stf_integrator_find
 #undef stf_force_linear_drag
 #undef stf_force_quadratic_drag
 #undef stf_force_attractor
@@ -42,6 +44,8 @@
 #define stf_rk4 STF_VARIANT_NAME(rk4)
 #define stf_position_verlet STF_VARIANT_NAME(position_verlet)
 #define stf_velocity_verlet STF_VARIANT_NAME(velocity_verlet)
+#define stf_integrators STF_VARIANT_NAME(integrators)
+#define stf_integrator_find STF_VARIANT_NAME(integrator_find)
 #define stf_force_linear_drag STF_VARIANT_NAME(force_linear_drag)
 #define stf_force_quadratic_drag STF_VARIANT_NAME(force_quadratic_drag)
 #define stf_force_attractor STF_VARIANT_NAME(force_attractor)

@@ -179,6 +179,13 @@ static void flight_changes_no_bit(void **state)
             }
 }
 
+static void run_and_count(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+    ++*(unsigned *)user;
+}
+
 static void user_drag_is_twice_its_record(void **state)
 {
     (void)state;
@@ -220,6 +227,40 @@ static stf_world *tied_world(const stf_integrator *integrator, size_t count, con
     add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1, .softening = 1});
     add_force(world, link, link == &stf_force_all_pairs_gravity ? &gravity : NULL);
     return world;
+}
+
+/* An engine's thread pool may run one job at a time, and any number of threads may read a world. */
+static void reading_a_world_uses_no_threads(void **state)
+{
+    (void)state;
+    unsigned calls = 0;
+    const stf_parallel counted = {.run = run_and_count, .tasks = 4, .user = &calls};
+    stf_world *world = tied_world(&stf_rk4, LARGEST, &stf_force_all_pairs_gravity, counted);
+    const stf_particles view = stf_world_view(world);
+    stf_real *a = calloc((view.count + view.stride) * view.dimensions, sizeof *a);
+
+    assert_non_null(a);
+    assert_ok(stf_world_accelerations(world, 0, view.position, view.velocity, a));
+    assert_int_equal(calls, 0);
+    assert_ok(stf_world_step(world, 1));
+    assert_int_equal(calls, 4 + 4); /* accelerations and loops of RK4 */
+    free(a);
+    stf_world_destroy(world);
+}
+
+/* Each record is a real, their sum need not be: 0 times an infinity would be no number. */
+static void drags_that_overflow_leave_the_immovable_alone(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = STEP});
+    const stf_linear_drag drags[] = {{REAL_MAX}, {REAL_MAX}};
+
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 0, 0}}, NULL));
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, drags, COUNT_OF(drags), NULL));
+    assert_ok(stf_world_step(world, 2));
+    assert_true(particle_of(world, 0).position.x == (stf_real)(2 * STEP));
+    assert_true(stf_world_view(world).position[1] == 0);
+    stf_world_destroy(world);
 }
 
 static void parts_change_no_bit(void **state)
@@ -462,13 +503,6 @@ static void parts_have_scratch_of_their_own(void **state)
     stf_world_destroy(still);
 }
 
-static void run_and_count(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
-{
-    for (unsigned i = 0; i < tasks; i++)
-        task(context, i);
-    ++*(unsigned *)user;
-}
-
 /* A link that keeps to its part needs no other part to be done; for one that does not all fields come first, then all links. */
 static void links_of_the_library_run_within_the_parts(void **state)
 {
@@ -487,8 +521,8 @@ static void links_of_the_library_run_within_the_parts(void **state)
         for (size_t i = 0; i < LARGEST; i++)
             assert_ok(stf_world_add(world, &particle, NULL));
         add_force(world, links[l], records[l]);
-        assert_ok(stf_world_step(world, 1)); /* semi-implicit Euler: one acceleration */
-        assert_int_equal(calls, links[l]->splits ? 1 : 2);
+        assert_ok(stf_world_step(world, 1)); /* semi-implicit Euler: one acceleration, and one loop of its own */
+        assert_int_equal(calls, (links[l]->splits ? 1 : 2) + 1);
         assert_true(links[l]->splits == (links[l] != &idle_link));
         stf_world_destroy(world);
     }
@@ -884,6 +918,8 @@ int main(void)
         cmocka_unit_test(a_particle_moves_alike_alone_and_in_every_count),
         cmocka_unit_test(block_stepping_equals_whole_world_stepping),
         cmocka_unit_test(flight_changes_no_bit),
+        cmocka_unit_test(reading_a_world_uses_no_threads),
+        cmocka_unit_test(drags_that_overflow_leave_the_immovable_alone),
         cmocka_unit_test(user_drag_is_twice_its_record),
         cmocka_unit_test(parts_change_no_bit),
         cmocka_unit_test(parts_pull_each_end_of_a_spring_once),

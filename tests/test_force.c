@@ -475,6 +475,47 @@ static void every_record_of_a_force_counts(void **state)
 }
 
 /* Where a formula has no value the force is 0, and the state stays finite. */
+/* What a particle feels does not depend on what it does: one so light that G m is 0 still falls, wherever it stands. */
+static void the_lightest_particles_feel_every_other(void **state)
+{
+    (void)state;
+    const stf_real tiny = (stf_real)(sqrt((double)REAL_LEAST) * 1e-10);
+    const stf_all_pairs_gravity gravity = {.gravitational_constant = tiny};
+    double felt[2] = {0, 0};
+
+    for (size_t light = 0; light < 2; light++) {
+        stf_world *world = make_world((stf_world_def){.dimensions = 1, .integrator = &peek, .step = 1});
+        const size_t index = light == 0 ? 3 : COUNT - 1; /* in the first block, and in the last */
+
+        for (size_t i = 0; i < COUNT; i++)
+            assert_ok(stf_world_add(world, &(stf_particle){.position = {i == index ? 0 : 1 + (stf_real)(i % 7), 0, 0},
+                                                           .inverse_mass = i == index ? 1 / tiny : tiny}, NULL));
+        add_force(world, &stf_force_all_pairs_gravity, &gravity);
+        assert_ok(stf_world_step(world, 1));
+        felt[light] = (double)particle_of(world, index).velocity.x;
+        stf_world_destroy(world);
+    }
+    assert_above(felt[0], 1);
+    assert_close(felt[1] / felt[0], 1, 0.05); /* other sevenths of the others */
+}
+
+/* Every particle is 0 from itself, whatever the softening; an attractor's centre is as well. */
+static void a_tiny_softening_makes_no_infinity_of_nothing(void **state)
+{
+    (void)state;
+    const stf_real tiny = (stf_real)(sqrt((double)REAL_LEAST) * 10);
+    stf_world *world = make_world((stf_world_def){.integrator = &peek, .step = 1});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = (stf_real)1e-20}, NULL));
+    assert_ok(stf_world_add(world, &(stf_particle){.position = {2, 0, 0}, .inverse_mass = 1}, NULL));
+    add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){.gravitational_constant = 1, .softening = tiny});
+    add_force(world, &stf_force_attractor, &(stf_attractor){.strength = (stf_real)1e20, .softening = tiny});
+    assert_ok(stf_world_step(world, 1));
+    assert_true(particle_of(world, 0).velocity.x >= 0);
+    assert_below(particle_of(world, 0).velocity.x, 1);
+    stf_world_destroy(world);
+}
+
 static void coincidence_pulls_nowhere(void **state)
 {
     (void)state;
@@ -746,6 +787,8 @@ int main(void)
         cmocka_unit_test(anchored_springs_pull_to_their_anchors_in_any_order),
         cmocka_unit_test(all_pairs_gravity_is_the_sum_over_all_others),
         cmocka_unit_test(every_record_of_a_force_counts),
+        cmocka_unit_test(the_lightest_particles_feel_every_other),
+        cmocka_unit_test(a_tiny_softening_makes_no_infinity_of_nothing),
         cmocka_unit_test(coincidence_pulls_nowhere),
         cmocka_unit_test(forces_at_rest_are_minus_the_gradient_of_the_potential),
         cmocka_unit_test(potentials_count_every_block_once),

@@ -78,12 +78,15 @@ typedef struct stf_allocator {
 
 /*
  * The engine's threads. `run` calls task(context, index) once for every index below `tasks`, on any threads and in any order,
- * and returns when all are done. All zero: the caller's thread does all. Results never depend on it.
+ * and returns when all are done. All zero: the caller's thread does all. The bits never depend on it, as long as all threads
+ * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
+ * force acts; else for each acceleration (twice, if a link does not split) and each loop of the integrator. A task wants some
+ * 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);
-    unsigned tasks; /* into how many a step is split at most: as many as there are threads, or a few times that */
-    void *user;
+    unsigned tasks; /* into how many a step is split at most: as many as there are threads, or a few times that; to 1,024 */
+    void *user;     /* outlives the world */
 } stf_parallel;
 
 #ifdef __cplusplus

@@ -39,6 +39,17 @@
  *     const stf_force tether_force = {.name = "tether", .kind = STF_LINK, .record_size = sizeof(tether), .apply = haul,
  *                                     .potential = hauled, .depends_on = STF_ON_POSITION};
  *
+ * A link force that splits may use all of the engine's threads. It is called once for each range of whole blocks, with all
+ * records each time, and adds to particles begin <= i < end only: force outside of that is another thread's, and not even to be
+ * read. Each particle's sum has to be in an order that does not depend on the range. haul splits so:
+ *
+ *             if (t[r].a >= all->begin && t[r].a < all->end)
+ *                 all->force[a] += pull;
+ *             if (t[r].b >= all->begin && t[r].b < all->end)
+ *                 all->force[b] -= pull;
+ *
+ * While a link that does not split acts, all links of the world run on one thread.
+ *
  * A world with no link force, or none that has records, steps block by block, all stages of a block in cache; one link force
  * makes it pass over all particles for each stage.
  *
@@ -62,8 +73,7 @@ typedef struct stf_force {
     const char *name; /* required */
     stf_force_kind kind; /* 0: STF_FIELD */
     unsigned depends_on; /* STF_ON_POSITION | STF_ON_VELOCITY | STF_ON_TIME */
-    bool splits;         /* a link force whose apply keeps to particles->begin and end: the world may call it for several
-                            ranges at once, on several threads */
+    bool splits;         /* a link force whose apply may be called for several ranges of particles at once; see below */
     size_t record_size;  /* bytes of one parameter record; 0: the force has no parameters */
 
     /* Adds newtons to particles->force. records: [record_count], the world's copy. time in s. Required, but for a linear drag.
@@ -71,8 +81,9 @@ typedef struct stf_force {
     void (*apply)(const void *records, size_t record_count, const stf_particles *particles, double time);
 
     /*
-     * Instead of apply: the k, kg/s, of a force that is F = -k v on every particle. Like gravity it then costs no loop: the
-     * world writes it into a = gravity - (k / m) v + F / m.
+     * Instead of apply, never beside it: the k, kg/s, of a force that is F = -k v on every particle. Like gravity it then
+     * costs no loop: the world writes it into a = gravity - (k / m) v + F / m. Depends on the records alone, and may be called
+     * often, on any thread.
      */
     stf_real (*drag)(const void *records, size_t record_count);
 
@@ -88,10 +99,12 @@ typedef struct stf_force {
      */
     bool (*renumber)(void *record, size_t removed, size_t last);
 
-    /* Called on the world's copy whenever the records change, to put them into the order that apply wants. NULL: as given. */
+    /* Called on the world's copy, which is aligned to 64 bytes, whenever the records change or become fewer, to put them into
+       the order that apply wants. NULL: as given. */
     void (*arrange)(void *records, size_t record_count);
 
-    /* Bytes that arrange may fill, for apply to read, at stf_force_arranged(records, record_count, record_size). NULL: 0. */
+    /* Bytes that arrange may fill, for apply to read, at stf_force_arranged(records, record_count, record_size): never more for
+       fewer records; SIZE_MAX: too many records. NULL: 0. */
     size_t (*arranged_size)(size_t record_count);
 } stf_force;
 
@@ -146,8 +159,9 @@ STF_API extern const stf_force stf_force_anchored_springs;
  * on b the opposite; potential k (l - l0)^2 / 2; sources as above. Where l = 0 the force is 0. A link force. Removing a
  * particle drops its springs. Springs that are not compressed swing no faster than omega = sqrt(2 K / m), K the sum of the
  * stiffnesses at a particle and m its mass, where that is largest (Gershgorin's bound; in a chain 2 sqrt(k / m)): omega dt
- * has to stay below the integrator's limit. The records are kept in an order of their own: where both ends of 16 or more count
- * up (the rows and columns of a cloth), whole vectors of them are computed at once, some four times as fast as one by one.
+ * has to stay below the integrator's limit. The records are kept in an order of their own: where both ends of 16 or more
+ * count up (the rows and columns of a cloth), whole vectors of them are computed at once, some four times as fast as one by
+ * one. Adding or setting n springs sorts them: n log n, or one pass if they come in that order.
  */
 typedef struct stf_spring {
     uint32_t a, b;        /* indices; not the same */
@@ -161,7 +175,8 @@ STF_API extern const stf_force stf_force_springs;
  * Every particle pulls every other: F_i = -G m_i sum_j m_j d / (|d|^2 + e^2)^(3/2), d = x_i - x_j; potential
  * -G sum over pairs m_i m_j / sqrt(|d|^2 + e^2). Newton's law, Plummer's softening. Coincident particles do not pull
  * each other. An immovable particle has no finite mass and neither pulls nor feels: put an attractor there.
- * A link force. Cost: n (n - 1) interactions, no memory beyond the state. One record.
+ * A link force. Cost: n^2 / 2 square roots and divisions, each pair once for both ends (twice, if the two are in different
+ * parts of a step), no memory beyond the state. One record.
  */
 typedef struct stf_all_pairs_gravity {
     stf_real gravitational_constant; /* G, m^3/(kg s^2) */

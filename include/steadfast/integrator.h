@@ -55,7 +55,22 @@ struct stf_system {
      */
     void (*accelerate)(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
                        stf_real *acceleration);
+
+    void (*each)(stf_system *system, void (*loop)(stf_system *part, stf_real dt), stf_real dt); /* see stf_system_each */
 };
+
+/*
+ * Calls loop(part, dt) for systems that together are this one, each with its part of every array: on several threads where the
+ * world has them and steps as a whole, else once, with this one (also where `each` is NULL). For loops that take each element by
+ * itself; a step may as well loop over all of its arrays, on one thread. A loop does not call accelerate.
+ */
+static inline void stf_system_each(stf_system *system, void (*loop)(stf_system *part, stf_real dt), stf_real dt)
+{
+    if (system->each)
+        system->each(system, loop, dt);
+    else
+        loop(system, dt);
+}
 
 /*
  * Blocks of particles in free flight, where nothing acts but gravity and linear drag: a = gravity - (drag inverse_mass) v in
@@ -68,7 +83,7 @@ typedef struct stf_flight {
     stf_real *position;           /* m */
     stf_real *velocity;           /* m/s */
     const stf_real *inverse_mass; /* 1/kg, [block * stride + i] */
-    stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as in stf_system */
+    stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as in stf_system; NULL beyond those that the world has */
     bool history_stale;                        /* as in stf_system */
     stf_real gravity[STF_DIMENSIONS_MAX];      /* m/s^2 */
     stf_real drag;                             /* k of F = -k v, kg/s */
@@ -79,11 +94,13 @@ enum {
     STF_REVERSIBLE = 1 << 1  /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
 };
 
-/* name and step are required, and the arrays that step uses; step_flight makes it faster; the rest is for people and instruments, and no step reads it. */
+/* name and step are required, and the arrays that step uses; step_flight makes it faster; the rest is for people and
+   instruments, and no step reads it. */
 typedef struct stf_integrator {
     const char *name; /* "rk4" */
     void (*step)(stf_system *system, stf_real dt); /* dt in s */
-    void (*step_flight)(const stf_flight *flight, stf_real dt); /* NULL, or what step does, in one pass, with the same bits */
+    void (*step_flight)(const stf_flight *flight, stf_real dt); /* NULL, or what step does, in one pass and with the same bits:
+                                                                   compile it without contraction (-ffp-contract=off) */
     int order;                  /* of the global error, of positions and velocities, for forces of t, x and v */
     int evaluations;            /* calls of accelerate a step, once the history is built */
     int work_arrays;            /* 0 to STF_WORK_ARRAYS_MAX */

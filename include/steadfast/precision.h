@@ -26,6 +26,7 @@ typedef double stf_real;
 /* integrator */
 #define stf_system                  stf_system_f64
 #define stf_flight                  stf_flight_f64
+#define stf_system_each             stf_system_each_f64
 #define stf_integrator              stf_integrator_f64
 #define stf_explicit_euler          stf_explicit_euler_f64
 #define stf_semi_implicit_euler     stf_semi_implicit_euler_f64

@@ -28,7 +28,7 @@ typedef struct stf_world_def {
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
     stf_allocator allocator;          /* all zero: malloc and free */
-    stf_parallel parallel;            /* all zero: no threads. Forces of your own are then called from several at once */
+    stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
 /* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator; half an
@@ -69,8 +69,7 @@ STF_API stf_result stf_world_set(stf_world *world, size_t index, const stf_parti
 /*
  * Removes a particle: the last one takes its index. *moved (unless NULL) gets the index that the moved particle had, which
  * is `index` itself where the removed one was the last. Records of forces are renumbered, those that name the removed
- * particle dropped. Errors: PARTICLE. Cost: one look at each record that names particles, and a move of those behind a
- * dropped one.
+ * particle dropped. Errors: PARTICLE. Cost: a few looks at each record that names particles, to renumber and to arrange them.
  */
 STF_API stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved);
 
@@ -99,8 +98,9 @@ STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force,
                                        size_t record_count, stf_force_id *id);
 
 /*
- * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy, an allocation only where there
- * are more than ever before or none, and velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
+ * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy; a sort where the force keeps them
+ * in order (one pass, if they come in the order that stf_world_force_records shows); an allocation only where there are more
+ * than ever before or none; velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
  * that records may change at every tick. A force that is known beforehand had better compute its change from `time` in
  * apply.
  */
@@ -156,7 +156,8 @@ STF_API unsigned stf_world_dimensions(const stf_world *world);
 
 /*
  * The instruction set that this world's loops were compiled for: "avx512", "avx2" or "baseline", the widest that the machine
- * has, or what the environment variable STEADFAST_ISA named when the world was made. All give the same bits.
+ * has, or what the environment variable STEADFAST_ISA named when the world was made, if the machine has that. All give the same
+ * bits. A copy of a descriptor of the library is your own, and runs the baseline's loops.
  */
 STF_API const char *stf_world_isa(const stf_world *world);
 
@@ -176,15 +177,15 @@ STF_API stf_result stf_world_momentum(const stf_world *world, double momentum[ST
 
 /*
  * The particles where they stand, to read: positions, velocities and inverse masses of the whole world in its blocks, no copy;
- * force is NULL. Valid until the world is changed. All zero for NULL.
+ * force is NULL. Valid until the next call that takes the world not const. All zero for NULL.
  */
 STF_API stf_particles stf_world_view(const stf_world *world);
 
 /*
  * acceleration = a(time, position, velocity) in m/s^2, gravity and every force of this world as it stands, for any state that
  * is asked about; the world is not changed. The three arrays do not overlap, are laid out as those of stf_world_view and as
- * long, lanes behind the last particle included: stride x dimensions reals a block; aligned to 64 bytes if a force of your own
- * relies on that. Errors: NULL. Cost: one call of every force; no allocation.
+ * long, lanes behind the last particle included (finite numbers, best 0): stride x dimensions reals a block; aligned to 64
+ * bytes if a force of your own relies on that. Errors: NULL. Cost: one call of every force; no allocation.
  */
 STF_API stf_result stf_world_accelerations(const stf_world *world, double time, const stf_real *position,
                                            const stf_real *velocity, stf_real *acceleration);

@@ -21,12 +21,13 @@ static stf_result all_pairs_check(const void *record, unsigned dimensions, size_
 typedef struct tile {
     size_t stride;                    /* lanes; those that hold no particle have no strength */
     const stf_real *x;                /* rows */
+    const stf_real *inverse_mass;
     stf_real strength[STF_BLOCK_MAX]; /* G m; 0: the immovable */
     stf_real a[STF_DIMENSIONS_MAX * STF_BLOCK_MAX]; /* rows of the accelerations by one other tile */
 } tile;
 
 /* Sums over lanes are made in so many places at once, on every machine. */
-#define PLACES ((size_t)16)
+#define PLACES STF_ROW_MULTIPLE
 
 /* By halves, so that vectors are added as long as there are any. */
 STF_INLINE stf_real sum_of(stf_real *sums)
@@ -38,9 +39,9 @@ STF_INLINE stf_real sum_of(stf_real *sums)
 }
 
 /*
- * One particle at p and the lanes of a tile: a = -G m d / (|d|^2 + e^2)^(3/2) of each by the other, with two factors, as the cube
- * of a distance leaves the reals long before the force does. `dimensions` and whose end is wanted are constants at each call, so
- * the compiler makes a loop for each.
+ * One particle at p and the lanes of a tile: a = -G m d / (|d|^2 + e^2)^(3/2) of each by the other, with two factors, as the
+ * cube of a distance leaves the reals long before the force does. `dimensions` and whose end is wanted are constants at each
+ * call, so the compiler makes a loop for each.
  */
 STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size_t stride, const stf_real *restrict x,
                            const stf_real *restrict strength, stf_real *restrict a, const stf_real *restrict p,
@@ -55,8 +56,8 @@ STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size
             const stf_real dx = px - x[i];
             const stf_real dy = dimensions > 1 ? py - x[stride + i] : 0;
             const stf_real dz = dimensions > 2 ? pz - x[2 * stride + i] : 0;
-            const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
-            const stf_real reciprocal = 1 / stf_sqrt(square), inverse = square > 0 ? reciprocal : 0;
+            const stf_real apart = dx * dx + dy * dy + dz * dz, square = softening_square + apart;
+            const stf_real reciprocal = 1 / stf_sqrt(square), inverse = apart > 0 ? reciprocal : 0;
             const stf_real ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
             const stf_real by_p = p_strength * inverse * inverse, by_lane = strength[i] * inverse * inverse;
 
@@ -84,7 +85,7 @@ STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size
 STF_INLINE void pull_tiles(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
 {
     for (size_t j = 0; j < from->stride; j++)
-        if (from->strength[j] != 0)
+        if (from->inverse_mass[j] > 0)
             pull_lanes(dimensions, to_end, from_end, to->stride, to->x, to->strength, to->a, from->x + j, from->strength[j],
                        softening_square, from->a + j);
 }
@@ -121,6 +122,7 @@ static void open_tile(tile *t, const stf_particles *all, size_t first, stf_real 
 {
     t->stride = all->stride;
     t->x = all->position + stf_particles_offset(all, first);
+    t->inverse_mass = all->inverse_mass + first;
     memset(t->a, 0, sizeof t->a);
     strengths(t->stride, t->strength, all->inverse_mass + first, constant);
 }

@@ -31,8 +31,8 @@ STF_INLINE void attract(unsigned dimensions, size_t n, size_t stride, stf_real *
         const stf_real dx = x[i] - cx;
         const stf_real dy = dimensions > 1 ? x[stride + i] - cy : 0;
         const stf_real dz = dimensions > 2 ? x[2 * stride + i] - cz : 0;
-        const stf_real square = softening_square + dx * dx + dy * dy + dz * dz;
-        const stf_real reciprocal = 1 / stf_sqrt(square), inverse = square > 0 ? reciprocal : 0;
+        const stf_real apart = dx * dx + dy * dy + dz * dz, square = softening_square + apart;
+        const stf_real reciprocal = 1 / stf_sqrt(square), inverse = apart > 0 ? reciprocal : 0;
         const stf_real pull = strength * inverse * inverse / inverse_mass[i];
         const stf_real factor = inverse_mass[i] > 0 ? pull : 0;
 

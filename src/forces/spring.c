@@ -33,7 +33,7 @@ static bool spring_renumber(void *record, size_t removed, size_t last)
  * Where both ends count up by one (a cloth's rows, columns and diagonals are such runs) vectors are loaded and stored whole.
  * Shorter runs are gathered and scattered.
  */
-#define RUN_MIN ((size_t)16)
+#define RUN_MIN STF_ROW_MULTIPLE
 
 static uint32_t lower(const stf_spring *s) { return s->a < s->b ? s->a : s->b; }
 static uint32_t upper(const stf_spring *s) { return s->a < s->b ? s->b : s->a; }
@@ -279,10 +279,21 @@ STF_INLINE void apply_batch(unsigned dimensions, bool all_mine, size_t n, const 
     }
 }
 
+static bool any_is_mine(const stf_particles *all, size_t n, const stf_spring *loose)
+{
+    bool any = false;
+
+    for (size_t i = 0; i < n; i++)
+        any = any || is_mine(all, loose[i].a) || is_mine(all, loose[i].b);
+    return any;
+}
+
 static void apply_loose(size_t n, const stf_spring *loose, const stf_particles *all)
 {
     const bool all_mine = all->begin == 0 && all->end == all->count;
 
+    if (!all_mine && !any_is_mine(all, n, loose))
+        return;
     if (all->dimensions == 1)
         apply_batch(1, false, n, loose, all);
     else if (all->dimensions == 2)

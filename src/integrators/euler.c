@@ -31,32 +31,38 @@ static void semi_implicit_euler_all(size_t n, stf_real *restrict x, stf_real *re
         semi_implicit_euler(&x[i], &v[i], a[i], dt);
 }
 
-static void explicit_euler_step(stf_system *system, stf_real dt)
+static void explicit_euler_loop(stf_system *part, stf_real dt)
 {
-    stf_real *a = system->work[0];
-
-    system->accelerate(system, system->time, system->position, system->velocity, a);
-    explicit_euler_all(system->length, system->position, system->velocity, a, dt);
+    explicit_euler_all(part->length, part->position, part->velocity, part->work[0], dt);
 }
 
-static inline void explicit_euler_element(stf_element *e, stf_free free, stf_real dt)
+static void explicit_euler_step(stf_system *system, stf_real dt)
 {
-    explicit_euler(&e->x, &e->v, stf_free_acceleration(free, e->v), dt);
+    system->accelerate(system, system->time, system->position, system->velocity, system->work[0]);
+    stf_system_each(system, explicit_euler_loop, dt);
+}
+
+static inline void explicit_euler_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    explicit_euler(&e->x, &e->v, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void explicit_euler_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, explicit_euler_element); }
 
-static void semi_implicit_euler_step(stf_system *system, stf_real dt)
+static void semi_implicit_euler_loop(stf_system *part, stf_real dt)
 {
-    stf_real *a = system->work[0];
-
-    system->accelerate(system, system->time, system->position, system->velocity, a);
-    semi_implicit_euler_all(system->length, system->position, system->velocity, a, dt);
+    semi_implicit_euler_all(part->length, part->position, part->velocity, part->work[0], dt);
 }
 
-static inline void semi_implicit_euler_element(stf_element *e, stf_free free, stf_real dt)
+static void semi_implicit_euler_step(stf_system *system, stf_real dt)
 {
-    semi_implicit_euler(&e->x, &e->v, stf_free_acceleration(free, e->v), dt);
+    system->accelerate(system, system->time, system->position, system->velocity, system->work[0]);
+    stf_system_each(system, semi_implicit_euler_loop, dt);
+}
+
+static inline void semi_implicit_euler_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    semi_implicit_euler(&e->x, &e->v, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void semi_implicit_euler_flight(const stf_flight *flight, stf_real dt)

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "../real.h"
 #include "steadfast/integrator.h"
 
 const stf_integrator *const stf_integrators[] = {

@@ -45,23 +45,32 @@ static void midpoint_all(size_t n, stf_real *restrict x, stf_real *restrict v, c
         midpoint(&x[i], &v[i], v2[i], a2[i], dt);
 }
 
-static void midpoint_step(stf_system *system, stf_real dt)
+/* Work arrays: a, and x and v of the stage. */
+static void midpoint_predict_loop(stf_system *part, stf_real dt)
 {
-    const size_t n = system->length;
-    stf_real *x = system->position, *v = system->velocity;
-    stf_real *a = system->work[0], *stage_x = system->work[1], *stage_v = system->work[2];
-
-    system->accelerate(system, system->time, x, v, a);
-    predict_all(n, stage_x, stage_v, x, v, a, HALF * dt);
-    system->accelerate(system, system->time + 0.5 * (double)dt, stage_x, stage_v, a);
-    midpoint_all(n, x, v, stage_v, a, dt);
+    predict_all(part->length, part->work[1], part->work[2], part->position, part->velocity, part->work[0], HALF * dt);
 }
 
-static inline void midpoint_element(stf_element *e, stf_free free, stf_real dt)
+static void midpoint_loop(stf_system *part, stf_real dt)
 {
-    const stage s = advance(e->x, e->v, e->v, stf_free_acceleration(free, e->v), HALF * dt);
+    midpoint_all(part->length, part->position, part->velocity, part->work[2], part->work[0], dt);
+}
 
-    midpoint(&e->x, &e->v, s.v, stf_free_acceleration(free, s.v), dt);
+static void midpoint_step(stf_system *system, stf_real dt)
+{
+    stf_real *a = system->work[0], *stage_x = system->work[1], *stage_v = system->work[2];
+
+    system->accelerate(system, system->time, system->position, system->velocity, a);
+    stf_system_each(system, midpoint_predict_loop, dt);
+    system->accelerate(system, system->time + 0.5 * (double)dt, stage_x, stage_v, a);
+    stf_system_each(system, midpoint_loop, dt);
+}
+
+static inline void midpoint_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    const stage s = advance(e->x, e->v, e->v, stf_fall_acceleration(fall, e->v), HALF * dt);
+
+    midpoint(&e->x, &e->v, s.v, stf_fall_acceleration(fall, s.v), dt);
 }
 
 static void midpoint_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, midpoint_element); }
@@ -82,24 +91,33 @@ static void improved_euler_all(size_t n, stf_real *restrict x, stf_real *restric
         improved_euler(&x[i], &v[i], v2[i], a1[i], a2[i], dt);
 }
 
-static void improved_euler_step(stf_system *system, stf_real dt)
+/* Work arrays: a1, a2, and x and v of the stage. */
+static void improved_euler_predict_loop(stf_system *part, stf_real dt)
 {
-    const size_t n = system->length;
-    stf_real *x = system->position, *v = system->velocity;
-    stf_real *a1 = system->work[0], *a2 = system->work[1], *stage_x = system->work[2], *stage_v = system->work[3];
-
-    system->accelerate(system, system->time, x, v, a1);
-    predict_all(n, stage_x, stage_v, x, v, a1, dt);
-    system->accelerate(system, system->time + (double)dt, stage_x, stage_v, a2);
-    improved_euler_all(n, x, v, stage_v, a1, a2, dt);
+    predict_all(part->length, part->work[2], part->work[3], part->position, part->velocity, part->work[0], dt);
 }
 
-static inline void improved_euler_element(stf_element *e, stf_free free, stf_real dt)
+static void improved_euler_loop(stf_system *part, stf_real dt)
 {
-    const stf_real a1 = stf_free_acceleration(free, e->v);
+    improved_euler_all(part->length, part->position, part->velocity, part->work[3], part->work[0], part->work[1], dt);
+}
+
+static void improved_euler_step(stf_system *system, stf_real dt)
+{
+    stf_real *a1 = system->work[0], *a2 = system->work[1], *stage_x = system->work[2], *stage_v = system->work[3];
+
+    system->accelerate(system, system->time, system->position, system->velocity, a1);
+    stf_system_each(system, improved_euler_predict_loop, dt);
+    system->accelerate(system, system->time + (double)dt, stage_x, stage_v, a2);
+    stf_system_each(system, improved_euler_loop, dt);
+}
+
+static inline void improved_euler_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    const stf_real a1 = stf_fall_acceleration(fall, e->v);
     const stage s = advance(e->x, e->v, e->v, a1, dt);
 
-    improved_euler(&e->x, &e->v, s.v, a1, stf_free_acceleration(free, s.v), dt);
+    improved_euler(&e->x, &e->v, s.v, a1, stf_fall_acceleration(fall, s.v), dt);
 }
 
 static void improved_euler_flight(const stf_flight *flight, stf_real dt)
@@ -160,40 +178,55 @@ static void rk4_all(size_t n, stf_real *restrict x, stf_real *restrict v, const 
         rk4(&x[i], &v[i], (sums){.v = sum_v[i], .a = sum_a[i]}, v4[i], a4[i], dt);
 }
 
-static void rk4_step(stf_system *system, stf_real dt)
+/* Work arrays: a, x and v of the stage, and the two sums. */
+static void rk4_first_loop(stf_system *part, stf_real dt)
 {
-    const size_t n = system->length;
-    const double t = system->time, t_half = t + 0.5 * (double)dt, t_full = t + (double)dt;
-    stf_real *x = system->position, *v = system->velocity;
-    stf_real *a = system->work[0], *stage_x = system->work[1], *stage_v = system->work[2];
-    stf_real *sum_v = system->work[3], *sum_a = system->work[4];
-
-    system->accelerate(system, t, x, v, a);
-    rk4_first_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
-    system->accelerate(system, t_half, stage_x, stage_v, a);
-    rk4_middle_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, HALF * dt);
-    system->accelerate(system, t_half, stage_x, stage_v, a);
-    rk4_middle_all(n, stage_x, stage_v, sum_v, sum_a, x, v, a, dt);
-    system->accelerate(system, t_full, stage_x, stage_v, a);
-    rk4_all(n, x, v, sum_v, sum_a, stage_v, a, dt);
+    rk4_first_all(part->length, part->work[1], part->work[2], part->work[3], part->work[4], part->position, part->velocity,
+                  part->work[0], dt);
 }
 
-static inline void rk4_element(stf_element *e, stf_free free, stf_real dt)
+static void rk4_middle_loop(stf_system *part, stf_real dt)
 {
-    const stf_real a1 = stf_free_acceleration(free, e->v);
+    rk4_middle_all(part->length, part->work[1], part->work[2], part->work[3], part->work[4], part->position, part->velocity,
+                   part->work[0], dt);
+}
+
+static void rk4_loop(stf_system *part, stf_real dt)
+{
+    rk4_all(part->length, part->position, part->velocity, part->work[3], part->work[4], part->work[2], part->work[0], dt);
+}
+
+static void rk4_step(stf_system *system, stf_real dt)
+{
+    const double t = system->time, t_half = t + 0.5 * (double)dt, t_full = t + (double)dt;
+    stf_real *a = system->work[0], *stage_x = system->work[1], *stage_v = system->work[2];
+
+    system->accelerate(system, t, system->position, system->velocity, a);
+    stf_system_each(system, rk4_first_loop, HALF * dt);
+    system->accelerate(system, t_half, stage_x, stage_v, a);
+    stf_system_each(system, rk4_middle_loop, HALF * dt);
+    system->accelerate(system, t_half, stage_x, stage_v, a);
+    stf_system_each(system, rk4_middle_loop, dt);
+    system->accelerate(system, t_full, stage_x, stage_v, a);
+    stf_system_each(system, rk4_loop, dt);
+}
+
+static inline void rk4_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    const stf_real a1 = stf_fall_acceleration(fall, e->v);
     const stage two = advance(e->x, e->v, e->v, a1, HALF * dt);
-    const stf_real a2 = stf_free_acceleration(free, two.v);
+    const stf_real a2 = stf_fall_acceleration(fall, two.v);
     const stage three = advance(e->x, e->v, two.v, a2, HALF * dt);
-    const stf_real a3 = stf_free_acceleration(free, three.v);
+    const stf_real a3 = stf_fall_acceleration(fall, three.v);
     const stage four = advance(e->x, e->v, three.v, a3, dt);
     const sums sum = add_middle(add_middle((sums){.v = e->v, .a = a1}, two.v, a2), three.v, a3);
 
-    rk4(&e->x, &e->v, sum, four.v, stf_free_acceleration(free, four.v), dt);
+    rk4(&e->x, &e->v, sum, four.v, stf_fall_acceleration(fall, four.v), dt);
 }
 
 static void rk4_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, rk4_element); }
 
-/* ---- descriptors ---------------------------------------------------------------------------------------------------------- */
+/* ---- descriptors --------------------------------------------------------------------------------------------------------- */
 
 /* Both methods of order 2 have the stability function 1 + z + z^2 / 2: |R| > 1 on all of the imaginary axis. */
 const stf_integrator stf_midpoint = {

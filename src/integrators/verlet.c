@@ -45,25 +45,30 @@ static void position_verlet_start_all(size_t n, stf_real *restrict d, const stf_
         d[i] = position_verlet_start(d[i], v[i], a[i], dt);
 }
 
-static void position_verlet_step(stf_system *system, stf_real dt)
+static void position_verlet_loop(stf_system *part, stf_real dt)
 {
-    const size_t n = system->length;
-    stf_real *x = system->position, *v = system->velocity, *a = system->work[0], *d = system->history[0];
+    const size_t n = part->length;
+    stf_real *x = part->position, *v = part->velocity, *a = part->work[0], *d = part->history[0];
 
-    system->accelerate(system, system->time, x, v, a);
-    if (system->history_stale)
+    if (part->history_stale)
         position_verlet_start_all(n, d, v, a, dt);
     position_verlet_all(n, x, v, d, a, dt);
 }
 
-static inline void position_verlet_element_start(stf_element *e, stf_free free, stf_real dt)
+static void position_verlet_step(stf_system *system, stf_real dt)
 {
-    e->history = position_verlet_start(e->history, e->v, stf_free_acceleration(free, e->v), dt);
+    system->accelerate(system, system->time, system->position, system->velocity, system->work[0]);
+    stf_system_each(system, position_verlet_loop, dt);
 }
 
-static inline void position_verlet_element(stf_element *e, stf_free free, stf_real dt)
+static inline void position_verlet_element_start(stf_element *e, stf_fall fall, stf_real dt)
 {
-    position_verlet(&e->x, &e->v, &e->history, stf_free_acceleration(free, e->v), dt);
+    e->history = position_verlet_start(e->history, e->v, stf_fall_acceleration(fall, e->v), dt);
+}
+
+static inline void position_verlet_element(stf_element *e, stf_fall fall, stf_real dt)
+{
+    position_verlet(&e->x, &e->v, &e->history, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void position_verlet_flight(const stf_flight *flight, stf_real dt)
@@ -99,29 +104,38 @@ static void velocity_verlet_second_all(size_t n, stf_real *restrict v, const stf
         velocity_verlet_second(&v[i], a[i], dt);
 }
 
+static void velocity_verlet_first_loop(stf_system *part, stf_real dt)
+{
+    velocity_verlet_first_all(part->length, part->position, part->velocity, part->work[0], part->history[0], dt);
+}
+
+static void velocity_verlet_second_loop(stf_system *part, stf_real dt)
+{
+    velocity_verlet_second_all(part->length, part->velocity, part->history[0], dt);
+}
+
 static void velocity_verlet_step(stf_system *system, stf_real dt)
 {
-    const size_t n = system->length;
-    stf_real *x = system->position, *v = system->velocity, *predicted_v = system->work[0], *a = system->history[0];
+    stf_real *x = system->position, *predicted_v = system->work[0], *a = system->history[0];
 
     if (system->history_stale)
-        system->accelerate(system, system->time, x, v, a);
-    velocity_verlet_first_all(n, x, v, predicted_v, a, dt);
+        system->accelerate(system, system->time, x, system->velocity, a);
+    stf_system_each(system, velocity_verlet_first_loop, dt);
     system->accelerate(system, system->time + (double)dt, x, predicted_v, a);
-    velocity_verlet_second_all(n, v, a, dt);
+    stf_system_each(system, velocity_verlet_second_loop, dt);
 }
 
-static inline void velocity_verlet_element_start(stf_element *e, stf_free free, stf_real dt)
+static inline void velocity_verlet_element_start(stf_element *e, stf_fall fall, stf_real dt)
 {
     (void)dt;
-    e->history = stf_free_acceleration(free, e->v);
+    e->history = stf_fall_acceleration(fall, e->v);
 }
 
-static inline void velocity_verlet_element(stf_element *e, stf_free free, stf_real dt)
+static inline void velocity_verlet_element(stf_element *e, stf_fall fall, stf_real dt)
 {
     const stf_real predicted_v = velocity_verlet_first(&e->x, &e->v, e->history, dt);
 
-    e->history = stf_free_acceleration(free, predicted_v);
+    e->history = stf_fall_acceleration(fall, predicted_v);
     velocity_verlet_second(&e->v, e->history, dt);
 }
 

@@ -32,7 +32,7 @@ static stf_real drag_of(const stf_world *world)
         if (added->acting->drag && stf_force_acts(added))
             sum += added->acting->drag(added->records, added->record_count);
     }
-    return sum;
+    return sum < STF_REAL_MAX ? sum : STF_REAL_MAX; /* so that 0 times it is 0, for what has no finite mass */
 }
 
 void stf_flight_start(stf_flight *flight, const stf_world *world)
@@ -41,6 +41,8 @@ void stf_flight_start(stf_flight *flight, const stf_world *world)
     flight->dimensions = world->dimensions;
     flight->drag = drag_of(world);
     memcpy(flight->gravity, world->gravity, sizeof flight->gravity);
+    for (int k = 0; k < STF_HISTORY_ARRAYS_MAX; k++)
+        flight->history[k] = NULL;
 }
 
 /* One call of accelerate, as its parts see it. */
@@ -122,7 +124,7 @@ static void accelerate(stf_system *system, double time, const stf_real *position
     const stf_world *world = range->world;
     request q = {.range = range, .time = time, .position = position, .velocity = velocity, .acceleration = acceleration};
 
-    q.parts = range->blocks > 1 ? stf_world_parts(world, range->blocks) : 1;
+    q.parts = range->parts;
     if (q.parts == 1 || !range->is_tied || !any_pushes(world, STF_LINK, false)) {
         stf_world_run(world, q.parts, whole_part, &q);
         return;
@@ -130,6 +132,43 @@ static void accelerate(stf_system *system, double time, const stf_real *position
     stf_world_run(world, q.parts, fields_part, &q);
     apply_links(&q, 0, range->blocks);
     stf_world_run(world, q.parts, last_part, &q);
+}
+
+/* One call of each, as its parts see it. */
+typedef struct loop_call {
+    const stf_range *range;
+    void (*loop)(stf_system *part, stf_real dt);
+    stf_real dt;
+    unsigned parts;
+} loop_call;
+
+static void loop_part(void *context, unsigned index)
+{
+    const loop_call *call = context;
+    const size_t length = stf_world_block_length(call->range->world), blocks = call->range->blocks;
+    const size_t begin = blocks * index / call->parts * length, end = blocks * (index + 1) / call->parts * length;
+    stf_system part = call->range->system;
+
+    part.length = end - begin;
+    part.position += begin;
+    part.velocity += begin;
+    for (int k = 0; k < call->range->world->storage.work_arrays; k++)
+        part.work[k] += begin;
+    for (int k = 0; k < call->range->world->storage.history_arrays; k++)
+        part.history[k] += begin;
+    call->loop(&part, call->dt);
+}
+
+static void each(stf_system *system, void (*loop)(stf_system *part, stf_real dt), stf_real dt)
+{
+    const stf_range *range = (const stf_range *)system;
+    loop_call call = {.range = range, .loop = loop, .dt = dt};
+
+    call.parts = range->parts;
+    if (call.parts == 1)
+        loop(system, dt);
+    else
+        stf_world_run(range->world, call.parts, loop_part, &call);
 }
 
 static void place_range(stf_range *range, size_t first_block)
@@ -150,9 +189,11 @@ void stf_range_start(stf_range *range, const stf_world *world, size_t first_bloc
 
     range->system.length = blocks * length;
     range->system.accelerate = accelerate;
+    range->system.each = each;
     range->world = world;
     range->blocks = blocks;
     range->is_tied = stf_world_is_tied(world);
+    range->parts = stf_world_parts(world, blocks);
     stf_flight_start(&range->flight, world);
     for (int k = 0; k < world->storage.work_arrays; k++)
         range->system.work[k] = world->storage.work[k] + part * length;
@@ -170,6 +211,7 @@ stf_result stf_world_accelerations(const stf_world *world, double time, const st
     stf_range range;
 
     stf_range_start(&range, world, 0, stf_world_blocks(world), 0);
+    range.parts = 1; /* several threads may read a world: only the one that changes it may use its threads */
     accelerate(&range.system, time, position, velocity, acceleration);
     return STF_OK;
 }

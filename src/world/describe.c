@@ -47,7 +47,7 @@ static void append_head(text *t, const stf_world *world)
            plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
            plural((unsigned long long)integrator->evaluations));
     append(t, "loops compiled for %s; at most %u part%s at a time\n", world->kernels->name,
-           world->parallel.run ? world->parallel.tasks : 1, plural(world->parallel.run ? world->parallel.tasks : 1));
+           stf_world_parts(world, SIZE_MAX), plural(stf_world_parts(world, SIZE_MAX)));
     if (stf_world_is_tied(world))
         append(t, "links tie particles together: every pass runs over the whole world\n");
     else if (stf_world_is_free(world) && world->stepper->step_flight)
@@ -70,7 +70,7 @@ static void append_state(text *t, const stf_world *world)
     if (world->keep_radius)
         append_row(t, "radius", 0, real, "");
     append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
-    append_row(t, "gravity, linear drag", 0, 0, "part of the integrator's passes, with every force's F / m");
+    append_row(t, "gravity, linear drag", 0, 0, "in flight part of the integrator's pass, else of F / m");
 }
 
 static void append_force(text *t, const stf_world *world, const stf_added_force *added)
@@ -78,7 +78,7 @@ static void append_force(text *t, const stf_world *world, const stf_added_force 
     const stf_force *force = added->force;
     const unsigned long long evaluations = (unsigned long long)world->integrator->evaluations;
     const unsigned long long passes = stf_force_acts(added) && force->apply ? evaluations : 0;
-    const double bytes = world->count ? (double)(added->record_count * force->record_size) / (double)world->count : 0;
+    const double bytes = world->count ? (double)added->bytes / (double)world->count : 0;
     char remark[96];
 
     snprintf(remark, sizeof remark, "%s, %zu record%s%s%s%s%s%s", force->kind == STF_LINK ? "link" : "field",

@@ -134,6 +134,7 @@ typedef struct stf_range {
     const stf_world *world;
     size_t first_block, blocks;
     bool is_tied;
+    unsigned parts; /* of a call of accelerate or each */
     stf_flight flight; /* without blocks */
 } stf_range;
 
@@ -141,10 +142,13 @@ typedef struct stf_range {
 void stf_range_start(stf_range *range, const stf_world *world, size_t first_block, size_t blocks, unsigned part);
 void stf_range_next(stf_range *range);
 
+#define STF_PARTS_MAX 1024
+
 /* Into how many parts work is split that has `most` of them. */
 static inline unsigned stf_world_parts(const stf_world *world, size_t most)
 {
-    const unsigned tasks = world->parallel.run ? world->parallel.tasks : 1;
+    const unsigned given = world->parallel.run ? world->parallel.tasks : 1;
+    const unsigned tasks = given < STF_PARTS_MAX ? given : STF_PARTS_MAX;
 
     return most < 2 || tasks < 2 ? 1 : most < tasks ? (unsigned)most : tasks;
 }
