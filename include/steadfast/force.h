@@ -97,8 +97,8 @@ typedef struct stf_force {
 
     /*
      * What a record is made of, so that a world with records can be saved (save.h): a letter for each number in it, in order:
-     * '1', '2', '4' or '8' is an integer (or a float or double whatever the precision) of so many bytes, 'r' a stf_real; "44rrr"
-     * is struct {uint32_t a, b; stf_real x, y, z;}. They lie where the compiler puts them; pads are not saved.
+     * '1', '2', '4' or '8' is an integer (or a float or double, whatever the precision) of so many bytes, 'r' a stf_real;
+     * "44rrr" is struct {uint32_t a, b; stf_real x, y, z;}. They lie where the compiler puts them; pads are not saved.
      * STF_NOT_SAVED: the records hold pointers, or what else means nothing to another process; they are set again by the user.
      * NULL: a world with such records is not saved.
      */
