@@ -188,14 +188,18 @@ static void assert_not_restored(stf_world *world, const moment *m, size_t size)
     saved_free(&before);
 }
 
+static void stand_still(stf_system *system, stf_real dt) { (void)system, (void)dt; }
+
 static void what_is_no_snapshot_of_it_is_refused(void **state)
 {
     (void)state;
-    static const stf_world_def others[] = {
+    static const stf_integrator idle = {.name = "idle", .step = stand_still, .history_arrays = 1};
+    const stf_world_def others[] = {
         {.dimensions = 3, .keep_previous = true, .keep_radius = true, .capacity = 100},
         {.dimensions = 2, .keep_previous = false, .keep_radius = true, .capacity = 100},
         {.dimensions = 2, .keep_previous = true, .keep_radius = false, .capacity = 100},
         {.dimensions = 2, .keep_previous = true, .keep_radius = true, .capacity = 100}, /* no room for history */
+        {.dimensions = 2, .keep_previous = true, .keep_radius = true, .capacity = 100, .integrator = &idle}, /* nor for work */
     };
     stf_world *world = make_world((stf_world_def){.dimensions = 2, .keep_previous = true, .keep_radius = true,
                                                   .integrator = &stf_velocity_verlet, .capacity = 100});
