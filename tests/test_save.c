@@ -23,7 +23,8 @@ static const stf_allocator no_allocator;
 
 /* Where the numbers of the head stand, and how long it is up to the integrator's name. */
 enum { AT_VERSION = 8, AT_BYTES = 12, AT_REAL = 20, AT_DIMENSIONS = 24, AT_FLAGS = 28, AT_SUBSTEPS = 32, AT_STEP = 40,
-       AT_TICKS = 48, AT_START_TICK = 56, AT_START_TIME = 64, AT_GRAVITY = 72, AT_NAME = AT_GRAVITY + 3 * (int)sizeof(stf_real) };
+       AT_TICKS = 48, AT_START_TICK = 56, AT_START_TIME = 64, AT_GRAVITY = 72,
+       AT_NAME = AT_GRAVITY + 3 * (int)sizeof(stf_real) };
 
 static void put(unsigned char *to, uint64_t number, size_t bytes)
 {

@@ -77,7 +77,8 @@ STF_API const char *stf_version(void);
 /*
  * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
  * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
- * destroy, reserve, and functions that add particles or add, set or remove a force or set an integrator: never in a step.
+ * destroy, reserve, load, and functions that add particles or add, set or remove a force or set an integrator: never in a
+ * step. stf_world_restore may release, and never allocates.
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);

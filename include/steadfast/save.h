@@ -36,7 +36,7 @@ STF_API size_t stf_world_save_size(const stf_world *world);
  * Writes the world into buffer[size]: the first stf_world_save_size bytes of it, the same on every machine for the same world,
  * in a format with a version, the precision and a checksum (CRC-32C). Records are written as their force's `fields` say.
  * Errors: BUFFER (too small), UNSAVABLE (a force has records and no fields), NOT_FINITE (a position, velocity or previous
- * position: it would not load). Cost: some 150 ns a particle, most of it the checksum; no allocation.
+ * position: it would not load). Cost: some 150 ns a particle; no allocation.
  */
 STF_API stf_result stf_world_save(const stf_world *world, void *buffer, size_t size);
 
@@ -59,7 +59,7 @@ typedef struct stf_mismatch {
  * stf_world_add_force. Errors: FOREIGN (no saved world), VERSION, TRUNCATED, ALTERED, PRECISION (saved by the other one),
  * MISMATCH (*mismatch says of what, unless it is NULL), MEMORY; NOT_FINITE, MASS, RADIUS, STEP, SUBSTEPS, DIMENSIONS and what
  * a force's check returns, of bytes that no world would save. Cost: some 150 ns a particle; an allocation for each force that
- * has records, and room for the particles if there is too little.
+ * has records and one for their list, and room for the particles if there is too little.
  */
 STF_API stf_result stf_world_load(stf_world *world, const void *buffer, size_t size, stf_mismatch *mismatch);
 
