@@ -41,4 +41,7 @@ static inline bool stf_vector_fits(stf_vector v, unsigned dimensions)
 
 static inline bool stf_is_coefficient(stf_real x) { return isfinite(x) && x >= 0; }
 
+/* 0 of the immovable, else of a mass that is a stf_real. */
+static inline bool stf_is_inverse_mass(stf_real x) { return stf_is_coefficient(x) && (x == 0 || x >= STF_REAL_MIN); }
+
 #endif

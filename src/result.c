@@ -19,6 +19,15 @@ static const char *const texts[STF_RESULT_COUNT] = {
     [STF_ERROR_ALPHA] = "the blending factor is not in [0, 1]",
     [STF_ERROR_STRIDE] = "the stride is smaller than the vector that it steps over",
     [STF_ERROR_NO_PREVIOUS] = "the world was not created with keep_previous",
+    [STF_ERROR_BUFFER] = "the buffer is too small",
+    [STF_ERROR_UNSAVABLE] = "a force has records but no fields that say what they are made of",
+    [STF_ERROR_FOREIGN] = "the buffer holds no saved world",
+    [STF_ERROR_VERSION] = "the world was saved in a format that this version of the library does not read",
+    [STF_ERROR_PRECISION] = "the world was saved in the other precision",
+    [STF_ERROR_TRUNCATED] = "the end of the saved world is missing",
+    [STF_ERROR_ALTERED] = "the saved world has been altered",
+    [STF_ERROR_MISMATCH] = "the world has not the dimensions, options, integrator or forces of the saved one",
+    [STF_ERROR_SNAPSHOT] = "the memory holds no snapshot, or the world lacks forces or room that it had",
 };
 
 const char *stf_result_text(stf_result result)

@@ -56,6 +56,15 @@ typedef enum stf_result {
     STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
     STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over */
     STF_ERROR_NO_PREVIOUS, /* blending was asked of a world that does not keep previous positions */
+    STF_ERROR_BUFFER,      /* a buffer that is smaller than what has to go into it */
+    STF_ERROR_UNSAVABLE,   /* a force has records and does not say what they are made of (stf_force.fields) */
+    STF_ERROR_FOREIGN,     /* bytes that are no saved world */
+    STF_ERROR_VERSION,     /* a world saved in a format that this library does not read */
+    STF_ERROR_PRECISION,   /* a world saved by the other precision */
+    STF_ERROR_TRUNCATED,   /* a saved world whose end is missing */
+    STF_ERROR_ALTERED,     /* a saved world whose checksum does not fit, or that contradicts itself */
+    STF_ERROR_MISMATCH,    /* a world that was not made like the saved one: see stf_mismatch */
+    STF_ERROR_SNAPSHOT,    /* no snapshot, or one of a world that had other forces or more room */
     STF_RESULT_COUNT
 } stf_result;
 
@@ -68,7 +77,8 @@ STF_API const char *stf_version(void);
 /*
  * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
  * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
- * destroy, reserve, and functions that add particles or add, set or remove a force or set an integrator: never in a step.
+ * destroy, reserve, load, and functions that add particles or add, set or remove a force or set an integrator: never in a
+ * step. stf_world_restore may release, and never allocates.
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);

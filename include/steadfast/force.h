@@ -100,13 +100,24 @@ typedef struct stf_force {
     bool (*renumber)(void *record, size_t removed, size_t last);
 
     /* Called on the world's copy, which is aligned to 64 bytes, whenever the records change or become fewer, to put them into
-       the order that apply wants. NULL: as given. */
+       the order that apply wants; those that are in it stay as they are. NULL: as given. */
     void (*arrange)(void *records, size_t record_count);
 
     /* Bytes that arrange may fill, for apply to read, at stf_force_arranged(records, record_count, record_size): never more for
        fewer records; SIZE_MAX: too many records. NULL: 0. */
     size_t (*arranged_size)(size_t record_count);
+
+    /*
+     * What a record is made of, so that a world with records can be saved (save.h): a letter for each number in it, in order:
+     * '1', '2', '4' or '8' is an integer (or a float or double, whatever the precision) of so many bytes, 'r' a stf_real;
+     * "44rrr" is struct {uint32_t a, b; stf_real x, y, z;}. They lie where the compiler puts them; pads are not saved.
+     * STF_NOT_SAVED: the records hold pointers, or what else means nothing to another process; they are set again by the user.
+     * NULL: a world with such records is not saved.
+     */
+    const char *fields;
 } stf_force;
+
+#define STF_NOT_SAVED "*"
 
 /* Where the bytes of arranged_size start: at the first multiple of 64 bytes behind the records. */
 static inline void *stf_force_arranged(const void *records, size_t record_count, size_t record_size)

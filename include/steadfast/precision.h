@@ -91,6 +91,13 @@ typedef double stf_real;
 #define stf_world_accelerations     stf_world_accelerations_f64
 #define stf_world_find_non_finite   stf_world_find_non_finite_f64
 #define stf_world_describe          stf_world_describe_f64
+/* save */
+#define stf_world_save_size         stf_world_save_size_f64
+#define stf_world_save              stf_world_save_f64
+#define stf_world_load              stf_world_load_f64
+#define stf_world_snapshot_size     stf_world_snapshot_size_f64
+#define stf_world_snapshot          stf_world_snapshot_f64
+#define stf_world_restore           stf_world_restore_f64
 /* stability */
 #define stf_stability_measure       stf_stability_measure_f64
 /* trade */

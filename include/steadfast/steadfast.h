@@ -7,6 +7,7 @@
 #include "steadfast/force.h"
 #include "steadfast/integrator.h"
 #include "steadfast/particle.h"
+#include "steadfast/save.h"
 #include "steadfast/stability.h"
 #include "steadfast/trade.h"
 #include "steadfast/world.h"

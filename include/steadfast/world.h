@@ -100,7 +100,7 @@ STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force,
 /*
  * Replaces the records of a force. Errors: FORCE, and as stf_world_add_force. Cost: a copy; a sort where the force keeps them
  * in order (one pass, if they come in the order that stf_world_force_records shows); an allocation only where there are more
- * than ever before or none; velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
+ * than ever before; velocity Verlet's acceleration. Position Verlet takes the change to have come half a step ago, so
  * that records may change at every tick. A force that is known beforehand had better compute its change from `time` in
  * apply.
  */

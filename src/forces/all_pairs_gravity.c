@@ -205,6 +205,7 @@ const stf_force stf_force_all_pairs_gravity = {
     .splits = true,
     .depends_on = STF_ON_POSITION,
     .record_size = sizeof(stf_all_pairs_gravity),
+    .fields = "rr",
     .apply = all_pairs_apply,
     .potential = all_pairs_potential,
     .check = all_pairs_check,

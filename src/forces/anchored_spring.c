@@ -106,6 +106,7 @@ const stf_force stf_force_anchored_springs = {
     .kind = STF_FIELD,
     .depends_on = STF_ON_POSITION | STF_ON_VELOCITY,
     .record_size = sizeof(stf_anchored_spring),
+    .fields = "4rrrrrr",
     .apply = anchored_apply,
     .potential = anchored_potential,
     .check = anchored_check,

@@ -84,6 +84,7 @@ const stf_force stf_force_attractor = {
     .kind = STF_FIELD,
     .depends_on = STF_ON_POSITION,
     .record_size = sizeof(stf_attractor),
+    .fields = "rrrrr",
     .apply = attractor_apply,
     .potential = attractor_potential,
     .check = attractor_check,

@@ -63,6 +63,7 @@ const stf_force stf_force_linear_drag = {
     .kind = STF_FIELD,
     .depends_on = STF_ON_VELOCITY,
     .record_size = sizeof(stf_linear_drag),
+    .fields = "r",
     .drag = linear_drag,
     .check = linear_check,
 };
@@ -72,6 +73,7 @@ const stf_force stf_force_quadratic_drag = {
     .kind = STF_FIELD,
     .depends_on = STF_ON_VELOCITY,
     .record_size = sizeof(stf_quadratic_drag),
+    .fields = "r",
     .apply = quadratic_apply,
     .check = quadratic_check,
 };

@@ -342,6 +342,7 @@ const stf_force stf_force_springs = {
     .splits = true,
     .depends_on = STF_ON_POSITION | STF_ON_VELOCITY,
     .record_size = sizeof(stf_spring),
+    .fields = "44rrr",
     .apply = spring_apply,
     .potential = spring_potential,
     .check = spring_check,

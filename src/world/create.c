@@ -1,7 +1,6 @@
 #include "world.h"
 
-/* Whether a step of the integrator is a number that the precision holds without loss. */
-static bool is_step(double step, unsigned substeps)
+bool stf_world_is_step(double step, unsigned substeps)
 {
     const double integrator_step = step / substeps;
 
@@ -15,14 +14,14 @@ static bool is_integrator(const stf_integrator *integrator)
            integrator->history_arrays <= STF_HISTORY_ARRAYS_MAX;
 }
 
-static stf_result check_gravity(stf_vector gravity, unsigned dimensions)
+stf_result stf_world_check_gravity(stf_vector gravity, unsigned dimensions)
 {
     if (!stf_vector_is_finite(gravity))
         return STF_ERROR_NOT_FINITE;
     return stf_vector_fits(gravity, dimensions) ? STF_OK : STF_ERROR_DIMENSIONS;
 }
 
-static void put_gravity(stf_world *world, stf_vector gravity)
+void stf_world_put_gravity(stf_world *world, stf_vector gravity)
 {
     world->gravity[0] = gravity.x + 0; /* -0 becomes 0: then it does not matter which loop adds it */
     world->gravity[1] = gravity.y + 0;
@@ -49,11 +48,11 @@ static stf_result check_def(const stf_world_def *def)
 {
     if (def->dimensions > STF_DIMENSIONS_MAX)
         return STF_ERROR_DIMENSIONS;
-    if (!is_step(def->step, def->substeps))
+    if (!stf_world_is_step(def->step, def->substeps))
         return STF_ERROR_STEP;
     if (!is_integrator(def->integrator))
         return STF_ERROR_DESCRIPTOR;
-    return check_gravity(def->gravity, def->dimensions);
+    return stf_world_check_gravity(def->gravity, def->dimensions);
 }
 
 stf_result stf_world_create(const stf_world_def *given, stf_world **world)
@@ -88,7 +87,7 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
         .history_stale = true,
     };
     made->stepper = stf_kernels_integrator(made->kernels, def.integrator);
-    put_gravity(made, def.gravity);
+    stf_world_put_gravity(made, def.gravity);
 
     const stf_result no_room = stf_storage_require(made, def.capacity, def.integrator, false);
     if (no_room) {
@@ -136,14 +135,14 @@ stf_result stf_world_set_gravity(stf_world *world, stf_vector gravity)
     if (!world)
         return STF_ERROR_NULL;
 
-    const stf_result bad = check_gravity(gravity, world->dimensions);
+    const stf_result bad = stf_world_check_gravity(gravity, world->dimensions);
     if (bad)
         return bad;
 
     if (gravity.x == world->gravity[0] && gravity.y == world->gravity[1] && gravity.z == world->gravity[2])
         return STF_OK;
 
-    put_gravity(world, gravity);
+    stf_world_put_gravity(world, gravity);
     world->history_stale = true;
     return STF_OK;
 }
@@ -152,7 +151,7 @@ stf_result stf_world_set_step(stf_world *world, double step)
 {
     if (!world)
         return STF_ERROR_NULL;
-    if (!is_step(step, world->substeps))
+    if (!stf_world_is_step(step, world->substeps))
         return STF_ERROR_STEP;
     if (step == world->step)
         return STF_OK;
@@ -170,7 +169,7 @@ stf_result stf_world_set_substeps(stf_world *world, unsigned substeps)
         return STF_ERROR_NULL;
     if (substeps == 0)
         return STF_ERROR_SUBSTEPS;
-    if (!is_step(world->step, substeps))
+    if (!stf_world_is_step(world->step, substeps))
         return STF_ERROR_STEP;
 
     if (substeps != world->substeps)

@@ -6,10 +6,14 @@
 
 static bool is_force(const stf_force *force)
 {
-    return force->name && !force->apply != !force->drag && (force->kind == STF_FIELD || force->kind == STF_LINK);
+    const bool has_fields = force->fields && strcmp(force->fields, STF_NOT_SAVED) != 0;
+
+    return force->name && !force->apply != !force->drag && (force->kind == STF_FIELD || force->kind == STF_LINK) &&
+           (!has_fields || stf_fields_size(force->fields) == force->record_size);
 }
 
-static stf_result check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count)
+stf_result stf_force_check_records(const stf_force *force, const void *records, size_t record_count, unsigned dimensions,
+                                   size_t particle_count)
 {
     if (!records && record_count > 0)
         return STF_ERROR_NULL;
@@ -17,14 +21,19 @@ static stf_result check_records(const stf_world *world, const stf_force *force, 
         return STF_ERROR_PARAMETERS;
     for (size_t i = 0; force->check && i < record_count; i++) {
         const void *record = (const char *)records + i * force->record_size;
-        const stf_result bad = force->check(record, world->dimensions, world->count);
+        const stf_result bad = force->check(record, dimensions, particle_count);
         if (bad)
             return bad;
     }
     return STF_OK;
 }
 
-static void arrange_records(stf_added_force *added, size_t record_count)
+static stf_result check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count)
+{
+    return stf_force_check_records(force, records, record_count, world->dimensions, world->count);
+}
+
+void stf_force_arrange_records(stf_added_force *added, size_t record_count)
 {
     added->record_count = record_count;
     if (added->force->arrange && record_count > 0)
@@ -42,8 +51,14 @@ static size_t bytes_of(const stf_force *force, size_t record_count)
     return (record_count * force->record_size + STF_ALIGNMENT - 1) / STF_ALIGNMENT * STF_ALIGNMENT + arranged;
 }
 
-/* Fills in `added`'s own copy of the records, in the order that the force wants. */
-static stf_result copy_records(const stf_world *world, stf_added_force *added, const void *records, size_t record_count)
+bool stf_force_has_room(const stf_added_force *added, size_t record_count)
+{
+    const size_t bytes = record_count > 0 ? bytes_of(added->force, record_count) : 0;
+
+    return record_count == 0 || (bytes > 0 && bytes <= added->bytes);
+}
+
+stf_result stf_force_allocate_records(const stf_world *world, stf_added_force *added, size_t record_count)
 {
     added->records = NULL;
     added->record_count = record_count;
@@ -53,14 +68,23 @@ static stf_result copy_records(const stf_world *world, stf_added_force *added, c
 
     added->bytes = bytes_of(added->force, record_count);
     added->records = added->bytes ? stf_allocator_allocate(&world->allocator, added->bytes) : NULL;
-    if (!added->records)
-        return STF_ERROR_MEMORY;
-    memcpy(added->records, records, record_count * added->force->record_size);
-    arrange_records(added, record_count);
+    return added->records ? STF_OK : STF_ERROR_MEMORY;
+}
+
+/* Fills in `added`'s own copy of the records, in the order that the force wants. */
+static stf_result copy_records(const stf_world *world, stf_added_force *added, const void *records, size_t record_count)
+{
+    const stf_result no_memory = stf_force_allocate_records(world, added, record_count);
+
+    if (no_memory)
+        return no_memory;
+    if (record_count > 0)
+        memcpy(added->records, records, record_count * added->force->record_size);
+    stf_force_arrange_records(added, record_count);
     return STF_OK;
 }
 
-static void release_records(const stf_world *world, stf_added_force *added)
+void stf_force_release_records(const stf_world *world, stf_added_force *added)
 {
     stf_allocator_release(&world->allocator, added->records, added->bytes);
 }
@@ -111,7 +135,7 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
     if (force->kind == STF_LINK) {
         bad = stf_storage_require(world, world->count, world->integrator, true);
         if (bad) {
-            release_records(world, &added);
+            stf_force_release_records(world, &added);
             return bad;
         }
     }
@@ -137,15 +161,15 @@ stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *re
     stf_result bad = check_records(world, added->force, records, record_count);
     if (bad)
         return bad;
-    const size_t bytes = record_count > 0 ? bytes_of(added->force, record_count) : 0;
-    if (bytes > 0 && bytes <= added->bytes) {
-        memmove(added->records, records, record_count * added->force->record_size); /* they may be the world's own */
-        arrange_records(added, record_count);
+    if (stf_force_has_room(added, record_count)) {
+        if (record_count > 0)
+            memmove(added->records, records, record_count * added->force->record_size); /* they may be the world's own */
+        stf_force_arrange_records(added, record_count);
     } else {
         bad = copy_records(world, &changed, records, record_count);
         if (bad)
             return bad;
-        release_records(world, added);
+        stf_force_release_records(world, added);
         *added = changed;
     }
     world->history_stale = true;
@@ -170,7 +194,7 @@ stf_result stf_world_remove_force(stf_world *world, stf_force_id id)
     if (!added)
         return STF_ERROR_FORCE;
 
-    release_records(world, added);
+    stf_force_release_records(world, added);
     world->force_count--;
     memmove(added, added + 1, (size_t)(world->forces + world->force_count - added) * sizeof *added);
     stf_world_forget_history(world, 0, world->count);
@@ -202,7 +226,7 @@ static void renumber_records(stf_added_force *added, size_t removed, size_t last
             memcpy(records + kept * size, records + i * size, size);
         kept++;
     }
-    arrange_records(added, kept);
+    stf_force_arrange_records(added, kept);
 }
 
 void stf_world_renumber_forces(stf_world *world, size_t removed, size_t last)
@@ -222,6 +246,6 @@ void stf_world_drop_particle_records(stf_world *world)
 void stf_world_release_forces(stf_world *world)
 {
     for (size_t i = 0; i < world->force_count; i++)
-        release_records(world, &world->forces[i]);
+        stf_force_release_records(world, &world->forces[i]);
     stf_allocator_release(&world->allocator, world->forces, world->force_capacity * sizeof *world->forces);
 }

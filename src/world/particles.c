@@ -11,8 +11,7 @@ static stf_result check_particle(const stf_world *world, const stf_particle *par
         return STF_ERROR_NOT_FINITE;
     if (!stf_vector_fits(particle->position, world->dimensions) || !stf_vector_fits(particle->velocity, world->dimensions))
         return STF_ERROR_DIMENSIONS;
-    if (!stf_is_coefficient(particle->inverse_mass) ||
-        (particle->inverse_mass > 0 && particle->inverse_mass < STF_REAL_MIN))
+    if (!stf_is_inverse_mass(particle->inverse_mass))
         return STF_ERROR_MASS;
     if (!stf_is_coefficient(particle->radius) || (particle->radius > 0 && !world->keep_radius))
         return STF_ERROR_RADIUS;

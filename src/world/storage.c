@@ -139,6 +139,24 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
     return STF_OK;
 }
 
+size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
+{
+    const stf_storage *storage = &world->storage;
+    const size_t dimensions = world->dimensions;
+    size_t n = 0;
+
+    kept[n++] = (stf_kept){storage->position, dimensions, STF_KEPT_FINITE};
+    kept[n++] = (stf_kept){storage->velocity, dimensions, STF_KEPT_FINITE};
+    kept[n++] = (stf_kept){storage->inverse_mass, 1, STF_KEPT_INVERSE_MASS};
+    if (storage->previous)
+        kept[n++] = (stf_kept){storage->previous, dimensions, STF_KEPT_FINITE};
+    if (storage->radius)
+        kept[n++] = (stf_kept){storage->radius, 1, STF_KEPT_RADIUS};
+    for (int k = 0; k < world->integrator->history_arrays; k++)
+        kept[n++] = (stf_kept){storage->history[k], dimensions, STF_KEPT_ANYTHING};
+    return n;
+}
+
 void stf_storage_release(stf_world *world)
 {
     stf_allocator_release(&world->allocator, world->storage.memory, world->storage.bytes);

@@ -22,6 +22,19 @@
 #define stf_world_renumber_forces stf_world_renumber_forces_f64
 #define stf_world_drop_particle_records stf_world_drop_particle_records_f64
 #define stf_world_release_forces stf_world_release_forces_f64
+#define stf_world_is_step stf_world_is_step_f64
+#define stf_world_check_gravity stf_world_check_gravity_f64
+#define stf_world_put_gravity stf_world_put_gravity_f64
+#define stf_force_check_records stf_force_check_records_f64
+#define stf_force_arrange_records stf_force_arrange_records_f64
+#define stf_force_allocate_records stf_force_allocate_records_f64
+#define stf_force_has_room stf_force_has_room_f64
+#define stf_force_release_records stf_force_release_records_f64
+#define stf_fields_size stf_fields_size_f64
+#define stf_fields_packed_size stf_fields_packed_size_f64
+#define stf_fields_pack stf_fields_pack_f64
+#define stf_fields_unpack stf_fields_unpack_f64
+#define stf_storage_kept stf_storage_kept_f64
 #endif
 
 /* All arrays of a world, in one piece of memory. Blocks that hold particles have position, velocity and
@@ -169,5 +182,46 @@ void stf_world_renumber_forces(stf_world *world, size_t removed, size_t last);
 void stf_world_drop_particle_records(stf_world *world);
 
 void stf_world_release_forces(stf_world *world);
+
+/* Whether a step of the integrator is a number that the precision holds without loss. */
+bool stf_world_is_step(double step, unsigned substeps);
+
+stf_result stf_world_check_gravity(stf_vector gravity, unsigned dimensions);
+void stf_world_put_gravity(stf_world *world, stf_vector gravity);
+
+/* ---- records of a force, for what brings them from elsewhere ---- */
+
+stf_result stf_force_check_records(const stf_force *force, const void *records, size_t record_count, unsigned dimensions,
+                                   size_t particle_count);
+
+/* Gives `added` memory of its own for so many records, unset; what it had before is not released. */
+stf_result stf_force_allocate_records(const stf_world *world, stf_added_force *added, size_t record_count);
+
+/* Whether so many go into the memory that it has: never less than it ever had. */
+bool stf_force_has_room(const stf_added_force *added, size_t record_count);
+
+/* Its first record_count records, which have been checked, become its records, in the order that the force wants. */
+void stf_force_arrange_records(stf_added_force *added, size_t record_count);
+void stf_force_release_records(const stf_world *world, stf_added_force *added);
+
+/* Bytes of a struct of these fields (stf_force.fields), 0 if there are none such; and of its numbers alone. */
+size_t stf_fields_size(const char *fields);
+size_t stf_fields_packed_size(const char *fields);
+
+/* A record as its numbers without pads, low bytes first; and back. Pads are left as they are. */
+void stf_fields_pack(const char *fields, const void *record, unsigned char *packed);
+void stf_fields_unpack(const char *fields, const unsigned char *packed, void *record);
+
+/* An array that outlasts a step, and what its reals have to be. */
+typedef struct stf_kept {
+    stf_real *array;
+    size_t rows; /* components a particle */
+    enum { STF_KEPT_FINITE, STF_KEPT_INVERSE_MASS, STF_KEPT_RADIUS, STF_KEPT_ANYTHING } rule;
+} stf_kept;
+
+#define STF_KEPT_MAX (5 + STF_HISTORY_ARRAYS_MAX)
+
+/* All that its integrator keeps of the world, in an order that depends on nothing else; returns how many. */
+size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);
 
 #endif

@@ -235,6 +235,7 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         machine_group(fresh(&g), p, counts[COUNT_OF(counts) - 1]), give(&g, &to);
         pairs_group(fresh(&g), p, 10000, false), give(&g, &to);
     }
+    bench_rollback_group(fresh(&g), integrators[1], 10000), give(&g, &to);
     if (quick)
         return;
     pairs_group(fresh(&g), &bench_float, 100000, true), give(&g, &to);

@@ -51,6 +51,9 @@ void bench_run_group(bench_group *group);
 /* Creation of n particles by stf_world_add_many beside memcpy; in float. */
 void bench_creation_group(bench_group *group, size_t n);
 
+/* A snapshot and its restoration beside memcpy; in float. */
+void bench_rollback_group(bench_group *group, const char *integrator, size_t n);
+
 /* ---- report ---- */
 
 void bench_print_header(FILE *file, bool pinned);
