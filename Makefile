@@ -179,7 +179,7 @@ run: $(DEMO)
 	$(DEMO) --out $(BUILD)/pictures
 
 # The pictures of the README.
-pictures: $(DEMO) $(TRADE)
+pictures: $(DEMO) $(TRADE) $(BENCH)
 	@mkdir -p demo/pictures
 	$(DEMO) --headless --scene cloth --ticks 720 --png demo/pictures/cloth.png
 	$(DEMO) --headless --scene drag --integrator explicit_euler --ghost rk4 --png demo/pictures/drag.png
@@ -187,6 +187,9 @@ pictures: $(DEMO) $(TRADE)
 	$(TRADE) --markdown --precision float
 	$(TRADE) --scene kepler --csv $(BUILD)/sweep/kepler.csv --pictures $(BUILD)/sweep >$(BUILD)/sweep/kepler.txt
 	cp $(BUILD)/sweep/trade_kepler.png demo/pictures/trade.png
+	@mkdir -p $(BUILD)/pictures
+	$(BENCH) --picture $(BUILD)/pictures/bench >$(BUILD)/pictures/bench.txt
+	cp $(BUILD)/pictures/bench.png demo/pictures/bench.png
 
 need-sdl: | $(DEPS_FIRST)
 	@$(HAVE_SDL) || { echo "steadfast: the demo needs SDL2, SDL2_ttf and SDL2_image: type: make deps" >&2; exit 1; }
