@@ -35,10 +35,13 @@ static void append_row(text *t, const char *name, unsigned long long passes, dou
     append(t, "  %-32s %13s %16s%s%s\n", name, pass_text, byte_text, remark[0] ? "   " : "", remark);
 }
 
+static bool in_flight(const stf_world *world) { return stf_world_is_free(world) && world->stepper->step_flight; }
+
 static void append_head(text *t, const stf_world *world)
 {
     const stf_integrator *integrator = world->integrator;
     const unsigned long long particles = world->count, blocks = stf_world_blocks(world);
+    const unsigned parts = stf_world_parts(world, SIZE_MAX);
 
     append(t, "world of %u dimension%s in %s: %llu particle%s in %llu block%s of %zu\n", world->dimensions,
            plural(world->dimensions), STF_REAL_NAME, particles, plural(particles), blocks, plural(blocks),
@@ -46,11 +49,11 @@ static void append_head(text *t, const stf_world *world)
     append(t, "tick of %.6g s: %u step%s of %s (order %d, %d evaluation%s)\n", world->step, world->substeps,
            plural(world->substeps), integrator->name, integrator->order, integrator->evaluations,
            plural((unsigned long long)integrator->evaluations));
-    append(t, "loops compiled for %s; at most %u part%s at a time\n", world->kernels->name,
-           stf_world_parts(world, SIZE_MAX), plural(stf_world_parts(world, SIZE_MAX)));
+    append(t, "loops compiled for %s; a step in %s%u part%s\n", world->kernels->name, parts > 1 ? "up to " : "", parts,
+           plural(parts));
     if (stf_world_is_tied(world))
         append(t, "links tie particles together: every pass runs over the whole world\n");
-    else if (stf_world_is_free(world) && world->stepper->step_flight)
+    else if (in_flight(world))
         append(t, "free flight: one pass a step, memory is read and written once a tick\n");
     else
         append(t, "block by block: every pass runs in cache, memory is read and written once a tick\n");
@@ -60,7 +63,7 @@ static void append_state(text *t, const stf_world *world)
 {
     const double vector = (double)(world->dimensions * sizeof(stf_real)), real = (double)sizeof(stf_real);
     const stf_integrator *integrator = world->integrator;
-    const unsigned long long evaluations = (unsigned long long)integrator->evaluations;
+    const unsigned long long evaluations = in_flight(world) ? 1 : (unsigned long long)integrator->evaluations;
     const double work = world->storage.whole ? integrator->work_arrays * vector : 0;
 
     append(t, "  %-32s %13s %16s\n", "", "passes a step", "bytes a particle");
