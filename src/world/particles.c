@@ -62,7 +62,7 @@ static void put_lanes(stf_world *world, size_t first, size_t n, const stf_partic
     const size_t stride = storage->stride, at = stf_world_offset(world, first);
     const unsigned dimensions = world->dimensions;
 
-    if ((first & (stride - 1)) == 0)
+    if ((first & (stride - 1)) == 0 && n < stride) /* a block that is filled whole needs no zeros */
         stf_storage_open_block(world, first >> storage->shift);
     for (size_t i = 0; i < n; i++) {
         const stf_vector x = particles[i].position, v = particles[i].velocity;
