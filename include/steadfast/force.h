@@ -48,7 +48,7 @@
  *             if (t[r].b >= all->begin && t[r].b < all->end)
  *                 all->force[b] -= pull;
  *
- * While a link that does not split acts, all links of the world run on one thread.
+ * A link that neither splits nor has rounds runs on one thread.
  *
  * A world with no link force, or none that has records, steps block by block, all stages of a block in cache; one link force
  * makes it pass over all particles for each stage.
@@ -74,6 +74,14 @@ typedef struct stf_force {
     stf_force_kind kind; /* 0: STF_FIELD */
     unsigned depends_on; /* STF_ON_POSITION | STF_ON_VELOCITY | STF_ON_TIME */
     bool splits;         /* a link force whose apply may be called for several ranges of particles at once; see below */
+
+    /*
+     * Instead of splits, for a link force whose sums at two ends come out of one computation: how many rounds it takes. apply is
+     * then called for each round from 0 on, for all parts of a round before the next; in part p of n it does piece p, p + n,
+     * p + 2 n, ... of the round's work. No two pieces of a round may touch the same particle. NULL: none.
+     */
+    size_t (*rounds)(size_t record_count, const stf_particles *all);
+
     size_t record_size;  /* bytes of one parameter record; 0: the force has no parameters */
 
     /* Adds newtons to particles->force. records: [record_count], the world's copy. time in s. Required, but for a linear drag.
@@ -186,8 +194,8 @@ STF_API extern const stf_force stf_force_springs;
  * Every particle pulls every other: F_i = -G m_i sum_j m_j d / (|d|^2 + e^2)^(3/2), d = x_i - x_j; potential
  * -G sum over pairs m_i m_j / sqrt(|d|^2 + e^2). Newton's law, Plummer's softening. Coincident particles do not pull
  * each other. An immovable particle has no finite mass and neither pulls nor feels: put an attractor there.
- * A link force. Cost: n^2 / 2 square roots and divisions, each pair once for both ends (twice, if the two are in different
- * parts of a step), no memory beyond the state. One record.
+ * A link force. Cost: n^2 / 2 square roots and divisions, each pair once for both ends; no memory beyond the state.
+ * One record.
  */
 typedef struct stf_all_pairs_gravity {
     stf_real gravitational_constant; /* G, m^3/(kg s^2) */

@@ -47,6 +47,8 @@ typedef struct stf_particles {
     const stf_real *inverse_mass; /* 1/kg, [count], by plain index */
     stf_real *force;              /* N, laid out as position: add to it. NULL where a potential is asked for */
     size_t begin, end;            /* a link force that splits adds to particles begin <= i < end only; else 0 and count */
+    size_t round;                 /* of a link force that has rounds, see stf_force; */
+    unsigned part, parts;         /* and which part of it, of how many; else 0, 0 and 1 */
 } stf_particles;
 
 /* Where the first component of particle i stands in the position, velocity and force of a link force's particles. */

@@ -15,8 +15,8 @@ static stf_result all_pairs_check(const void *record, unsigned dimensions, size_
 
 /*
  * Pairs are taken tile by tile, a tile being the particles of one block, and of two different tiles each pair only once: square
- * root and division are what it costs. A tile's sum over another is finished before it is added to the newtons, so that it does
- * not matter who computes the other end.
+ * root and division are what it costs. In round 0 each tile is taken by itself; in the others each has one other, as in a
+ * tournament, so that the order of a tile's sum does not depend on how many threads take the pairs of a round.
  */
 typedef struct tile {
     size_t stride;                    /* lanes; those that hold no particle have no strength */
@@ -43,7 +43,7 @@ STF_INLINE stf_real sum_of(stf_real *sums)
  * cube of a distance leaves the reals long before the force does. `dimensions` and whose end is wanted are constants at each
  * call, so the compiler makes a loop for each.
  */
-STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size_t stride, const stf_real *restrict x,
+STF_INLINE void pull_lanes(unsigned dimensions, bool both, size_t stride, const stf_real *restrict x,
                            const stf_real *restrict strength, stf_real *restrict a, const stf_real *restrict p,
                            stf_real p_strength, stf_real softening_square, stf_real *restrict p_a)
 {
@@ -61,53 +61,44 @@ STF_INLINE void pull_lanes(unsigned dimensions, bool lanes_end, bool p_end, size
             const stf_real ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
             const stf_real by_p = p_strength * inverse * inverse, by_lane = strength[i] * inverse * inverse;
 
-            if (lanes_end) {
-                a[i] += by_p * ux;
-                if (dimensions > 1)
-                    a[STF_BLOCK_MAX + i] += by_p * uy;
-                if (dimensions > 2)
-                    a[2 * STF_BLOCK_MAX + i] += by_p * uz;
-            }
-            if (p_end) {
+            a[i] += by_p * ux;
+            if (dimensions > 1)
+                a[STF_BLOCK_MAX + i] += by_p * uy;
+            if (dimensions > 2)
+                a[2 * STF_BLOCK_MAX + i] += by_p * uz;
+            if (both) {
                 sum_x[k] += by_lane * ux;
                 sum_y[k] += by_lane * uy;
                 sum_z[k] += by_lane * uz;
             }
         }
-    if (p_end) {
+    if (both) {
         p_a[0] -= sum_of(sum_x);
         p_a[STF_BLOCK_MAX] -= sum_of(sum_y);
         p_a[2 * STF_BLOCK_MAX] -= sum_of(sum_z);
     }
 }
 
-/* Every particle of `from` and the lanes of `to`. */
-STF_INLINE void pull_tiles(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
+/* Every particle of `from` and the lanes of `to`; both ends of each pair, or that of the lanes. */
+STF_INLINE void pull_tiles(unsigned dimensions, bool both, tile *from, tile *to, stf_real softening_square)
 {
     for (size_t j = 0; j < from->stride; j++)
         if (from->inverse_mass[j] > 0)
-            pull_lanes(dimensions, to_end, from_end, to->stride, to->x, to->strength, to->a, from->x + j, from->strength[j],
+            pull_lanes(dimensions, both, to->stride, to->x, to->strength, to->a, from->x + j, from->strength[j],
                        softening_square, from->a + j);
 }
 
-STF_INLINE void pull_ends(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
-{
-    if (to_end && from_end)
-        pull_tiles(dimensions, true, true, from, to, softening_square);
-    else if (to_end)
-        pull_tiles(dimensions, true, false, from, to, softening_square);
-    else
-        pull_tiles(dimensions, false, true, from, to, softening_square);
-}
-
-static void pull(unsigned dimensions, bool to_end, bool from_end, tile *from, tile *to, stf_real softening_square)
+/* A tile by itself has one end only, each of whose particles pulls all others. */
+static void pull(unsigned dimensions, tile *from, tile *to, bool both, stf_real softening_square)
 {
     if (dimensions == 1)
-        pull_ends(1, to_end, from_end, from, to, softening_square);
+        pull_tiles(1, both, from, to, softening_square);
     else if (dimensions == 2)
-        pull_ends(2, to_end, from_end, from, to, softening_square);
+        pull_tiles(2, both, from, to, softening_square);
+    else if (!both)
+        pull_tiles(3, false, from, to, softening_square);
     else
-        pull_ends(3, to_end, from_end, from, to, softening_square);
+        pull_tiles(3, true, from, to, softening_square);
 }
 
 static void strengths(size_t n, stf_real *restrict strength, const stf_real *restrict inverse_mass, stf_real constant)
@@ -143,34 +134,48 @@ static void add_forces(const stf_particles *all, size_t first, const tile *t)
                 all->inverse_mass + first);
 }
 
-/* A tile by itself has one end only, each of whose particles pulls all others. */
 static void pull_pair(const stf_particles *all, size_t first, size_t second, stf_all_pairs_gravity gravity)
 {
-    const bool first_is_mine = first >= all->begin && first < all->end;
-    const bool second_is_mine = second >= all->begin && second < all->end;
-    const bool both = first != second && first_is_mine;
+    const bool both = first != second;
     tile from, to;
 
-    if (!first_is_mine && !second_is_mine)
-        return;
     open_tile(&from, all, first, gravity.gravitational_constant);
     open_tile(&to, all, second, gravity.gravitational_constant);
-    pull(all->dimensions, second_is_mine, both, &from, &to, gravity.softening * gravity.softening);
+    pull(all->dimensions, &from, &to, both, gravity.softening * gravity.softening);
     if (both)
         add_forces(all, first, &from);
-    if (second_is_mine)
-        add_forces(all, second, &to);
+    add_forces(all, second, &to);
+}
+
+static size_t tile_count(const stf_particles *all) { return (all->count + all->stride - 1) >> all->shift; }
+
+/* An odd number of tiles plays with one that is not there. */
+static size_t players(const stf_particles *all) { return (tile_count(all) + 1) / 2 * 2; }
+
+/* A record's rounds are each tile by itself and then the circle method (E. Lucas, Recreations mathematiques 2, 1883). */
+static size_t all_pairs_rounds(size_t record_count, const stf_particles *all) { return record_count * players(all); }
+
+/* The pair of this number in the circle's rounds: one player stays, the others go round. */
+static void find_pair(size_t circle, size_t round, size_t number, size_t *first, size_t *second)
+{
+    *first = number == 0 ? circle : (round + number) % circle;
+    *second = (round + circle - number) % circle;
 }
 
 static void all_pairs_apply(const void *records, size_t record_count, const stf_particles *all, double time)
 {
     const stf_all_pairs_gravity *gravity = records;
-    (void)time;
+    const size_t tiles = tile_count(all), most = players(all), round = all->round % most;
+    (void)record_count, (void)time;
 
-    for (size_t r = 0; r < record_count; r++)
-        for (size_t first = 0; first < all->count; first += all->stride)
-            for (size_t second = first; second < all->count; second += all->stride)
-                pull_pair(all, first, second, gravity[r]);
+    for (size_t number = all->part; number < (round == 0 ? tiles : most / 2); number += all->parts) {
+        size_t first = number, second = number;
+
+        if (round > 0)
+            find_pair(most - 1, round - 1, number, &first, &second);
+        if (first < tiles && second < tiles)
+            pull_pair(all, first << all->shift, second << all->shift, gravity[all->round / most]);
+    }
 }
 
 static double pair_potential(const stf_particles *all, size_t i, size_t j, stf_all_pairs_gravity gravity)
@@ -202,10 +207,10 @@ static double all_pairs_potential(const void *records, size_t record_count, cons
 const stf_force stf_force_all_pairs_gravity = {
     .name = "all_pairs_gravity",
     .kind = STF_LINK,
-    .splits = true,
     .depends_on = STF_ON_POSITION,
     .record_size = sizeof(stf_all_pairs_gravity),
     .fields = "rr",
+    .rounds = all_pairs_rounds,
     .apply = all_pairs_apply,
     .potential = all_pairs_potential,
     .check = all_pairs_check,

@@ -190,7 +190,9 @@ static void apply_alone(stf_jacobian *j, stf_force_id id)
     }
     seen.position = j->position, seen.velocity = j->velocity, seen.force = j->acceleration;
     if (force->kind == STF_LINK) {
-        force->apply(records, record_count, &seen, j->time);
+        const size_t rounds = force->rounds ? force->rounds(record_count, &seen) : 1;
+        for (seen.round = 0; seen.round < rounds; seen.round++)
+            force->apply(records, record_count, &seen, j->time);
         return;
     }
     for (size_t first = 0; first < j->at.count; first += seen.stride) {

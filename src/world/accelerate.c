@@ -80,17 +80,71 @@ static void apply_fields(const request *q, unsigned part)
     }
 }
 
-/* Where a link acts the range is all of the world. */
-static void apply_links(const request *q, size_t begin_block, size_t end_block)
+/* One call of a link force, as its parts see it. Where a link acts the range is all of the world. */
+typedef struct link_call {
+    const request *request;
+    const stf_added_force *added;
+    size_t round;
+    unsigned parts;
+} link_call;
+
+static void apply_link(const link_call *call, size_t begin_block, size_t end_block, unsigned part)
 {
-    const stf_world *world = q->range->world;
-    const size_t stride = world->storage.stride;
-    stf_particles all = stf_world_particles(world, q->range->first_block, q->range->blocks, q->position, q->velocity,
+    const request *q = call->request;
+    const size_t stride = q->range->world->storage.stride;
+    stf_particles all = stf_world_particles(q->range->world, q->range->first_block, q->range->blocks, q->position, q->velocity,
                                             q->acceleration);
 
     all.begin = begin_block * stride;
     all.end = end_block * stride < all.count ? end_block * stride : all.count;
-    apply(world, STF_LINK, &all, q->time);
+    all.round = call->round;
+    all.part = part;
+    all.parts = call->parts;
+    call->added->acting->apply(call->added->records, call->added->record_count, &all, q->time);
+}
+
+static size_t rounds_of(const request *q, const stf_added_force *added)
+{
+    const stf_particles all =
+        stf_world_particles(q->range->world, q->range->first_block, q->range->blocks, q->position, q->velocity, NULL);
+
+    return added->acting->rounds ? added->acting->rounds(added->record_count, &all) : 1;
+}
+
+static bool is_acting_link(const stf_added_force *added) { return added->acting->kind == STF_LINK && pushes(added); }
+
+/* All links on this thread; those that split, for these blocks. */
+static void apply_links(const request *q, size_t begin_block, size_t end_block)
+{
+    for (size_t i = 0; i < q->range->world->force_count; i++) {
+        link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
+        if (is_acting_link(call.added))
+            for (; call.round < rounds_of(q, call.added); call.round++)
+                apply_link(&call, begin_block, end_block, 0);
+    }
+}
+
+static void link_part(void *context, unsigned part)
+{
+    const link_call *call = context;
+    const bool splits = call->added->acting->splits;
+
+    apply_link(call, splits ? part_begin(call->request, part) : 0,
+               splits ? part_begin(call->request, part + 1) : call->request->range->blocks, part);
+}
+
+/* One link after another, each in as many parts as it allows. */
+static void apply_links_in_parts(const request *q)
+{
+    for (size_t i = 0; i < q->range->world->force_count; i++) {
+        link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
+        if (!is_acting_link(call.added))
+            continue;
+        if (call.added->acting->splits || call.added->acting->rounds)
+            call.parts = q->parts;
+        for (; call.round < rounds_of(q, call.added); call.round++)
+            stf_world_run(q->range->world, call.parts, link_part, &call);
+    }
 }
 
 static void forces_to_accelerations(const request *q, unsigned part)
@@ -130,7 +184,7 @@ static void accelerate(stf_system *system, double time, const stf_real *position
         return;
     }
     stf_world_run(world, q.parts, fields_part, &q);
-    apply_links(&q, 0, range->blocks);
+    apply_links_in_parts(&q);
     stf_world_run(world, q.parts, last_part, &q);
 }
 

@@ -205,6 +205,7 @@ stf_particles stf_world_particles(const stf_world *world, size_t first_block, si
         .position = position,
         .velocity = velocity,
         .end = left < blocks * stride ? left : blocks * stride,
+        .parts = 1,
         .inverse_mass = world->storage.inverse_mass + first,
         .force = force,
     };
