@@ -554,6 +554,12 @@ static void parts_are_never_more_than_blocks(void **state)
     }
     stf_world *world = NULL;
     assert_refused(stf_world_create(&(stf_world_def){.parallel = {.tasks = 2}}, &world), STF_ERROR_DESCRIPTOR);
+
+    stf_force either_way = stf_force_all_pairs_gravity; /* parts of rounds, or of particles: not both */
+    either_way.splits = true;
+    world = make_world((stf_world_def){0});
+    assert_refused(stf_world_add_force(world, &either_way, NULL, 0, NULL), STF_ERROR_DESCRIPTOR);
+    stf_world_destroy(world);
 }
 
 static void many_ticks_in_one_call_equal_one_tick_in_many(void **state)

@@ -239,8 +239,8 @@ static void bad_settings_are_refused_and_change_nothing(void **state)
 static void bad_forces_are_refused_and_change_nothing(void **state)
 {
     (void)state;
-    const stf_force no_apply = {.name = "no apply"}, no_name = {.apply = stf_force_linear_drag.apply};
-    const stf_force no_kind = {.name = "no kind", .apply = stf_force_linear_drag.apply, .kind = (stf_force_kind)2};
+    const stf_force no_apply = {.name = "no apply"}, no_name = {.apply = stf_force_quadratic_drag.apply};
+    const stf_force no_kind = {.name = "no kind", .apply = stf_force_quadratic_drag.apply, .kind = (stf_force_kind)2};
     const stf_linear_drag negative_linear = {-1}, nan_linear = {not_a_number};
     const stf_quadratic_drag negative_quadratic = {-1}, infinite_quadratic = {infinite};
     const stf_attractor attractors[] = {{{not_a_number, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{0, 0, 0}, infinite, 0},

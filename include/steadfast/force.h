@@ -73,10 +73,10 @@ typedef struct stf_force {
     const char *name; /* required */
     stf_force_kind kind; /* 0: STF_FIELD */
     unsigned depends_on; /* STF_ON_POSITION | STF_ON_VELOCITY | STF_ON_TIME */
-    bool splits;         /* a link force whose apply may be called for several ranges of particles at once; see below */
+    bool splits;         /* a link force whose apply may be called for several ranges of particles at once; see above */
 
     /*
-     * Instead of splits, for a link force whose sums at two ends come out of one computation: how many rounds it takes. apply is
+     * Instead of splits, never beside it, for a link force whose sums at two ends come out of one computation: how many rounds it takes. apply is
      * then called for each round from 0 on, for all parts of a round before the next; in part p of n it does piece p, p + n,
      * p + 2 n, ... of the round's work. No two pieces of a round may touch the same particle. NULL: none.
      */

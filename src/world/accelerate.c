@@ -118,9 +118,10 @@ static void apply_links(const request *q, size_t begin_block, size_t end_block)
 {
     for (size_t i = 0; i < q->range->world->force_count; i++) {
         link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
-        if (is_acting_link(call.added))
-            for (; call.round < rounds_of(q, call.added); call.round++)
-                apply_link(&call, begin_block, end_block, 0);
+        const size_t rounds = is_acting_link(call.added) ? rounds_of(q, call.added) : 0;
+
+        for (; call.round < rounds; call.round++)
+            apply_link(&call, begin_block, end_block, 0);
     }
 }
 
@@ -138,11 +139,11 @@ static void apply_links_in_parts(const request *q)
 {
     for (size_t i = 0; i < q->range->world->force_count; i++) {
         link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
-        if (!is_acting_link(call.added))
-            continue;
+        const size_t rounds = is_acting_link(call.added) ? rounds_of(q, call.added) : 0;
+
         if (call.added->acting->splits || call.added->acting->rounds)
             call.parts = q->parts;
-        for (; call.round < rounds_of(q, call.added); call.round++)
+        for (; call.round < rounds; call.round++)
             stf_world_run(q->range->world, call.parts, link_part, &call);
     }
 }

@@ -8,7 +8,8 @@ static bool is_force(const stf_force *force)
 {
     const bool has_fields = force->fields && strcmp(force->fields, STF_NOT_SAVED) != 0;
 
-    return force->name && !force->apply != !force->drag && (force->kind == STF_FIELD || force->kind == STF_LINK) &&
+    return force->name && !force->apply != !force->drag && !(force->splits && force->rounds) &&
+           (force->kind == STF_FIELD || force->kind == STF_LINK) &&
            (!has_fields || stf_fields_size(force->fields) == force->record_size);
 }
 
