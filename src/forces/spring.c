@@ -59,7 +59,7 @@ static int compare_springs(const void *left, const void *right)
     return order;
 }
 
-/* Springs that are computed together: a run, within one block at each end, or the loose ones of a block. */
+/* Springs that are computed together: a run, within one block at each end, or the loose ones of a group of blocks. */
 typedef struct stretch {
     size_t first, count; /* of the springs, or of the loose ones */
     bool is_run;
@@ -110,6 +110,26 @@ static void add_stretch(arrangement *to, size_t first, size_t count, bool is_run
         to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count, .is_run = is_run};
 }
 
+/*
+ * Loose springs stand by groups of blocks of their lower end, in a group by the block of the upper end: the lower ends' blocks
+ * stay in the second-level cache (9 KiB each, with forces), and each upper block comes by once a group. Measured in a random
+ * net of 4e5 springs in double: 17 ns a spring, 23 in the order of the lower ends alone, 20 with groups of 8 blocks.
+ */
+#define GROUP_BLOCKS 32
+
+static bool same_group(uint32_t a, uint32_t b)
+{
+    return a / (GROUP_BLOCKS * STF_BLOCK_MAX) == b / (GROUP_BLOCKS * STF_BLOCK_MAX);
+}
+
+static int compare_loose(const void *left, const void *right)
+{
+    const stf_spring *a = left, *b = right;
+    const int order = compare_numbers(upper(a) / STF_BLOCK_MAX, upper(b) / STF_BLOCK_MAX);
+
+    return order ? order : compare_springs(left, right);
+}
+
 static void find_stretches(const stf_spring *springs, size_t spring_count, arrangement *found)
 {
     size_t added = 0; /* loose springs that are in a stretch */
@@ -121,7 +141,8 @@ static void find_stretches(const stf_spring *springs, size_t spring_count, arran
             add_stretch(found, first, n, true);
         for (size_t i = first; n < RUN_MIN && i < first + n; i++)
             found->loose[found->loose_count++] = springs[i];
-        if (first + n == spring_count || !same_block(lower(&springs[first + n]), lower(&springs[first]))) {
+        if (first + n == spring_count || !same_group(lower(&springs[first + n]), lower(&springs[first]))) {
+            stf_sort(found->loose + added, found->loose_count - added, sizeof *springs, compare_loose);
             add_stretch(found, added, found->loose_count - added, false);
             added = found->loose_count;
         }
