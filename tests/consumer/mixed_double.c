@@ -5,6 +5,7 @@
 #include <math.h>
 
 double angle_in_double(unsigned ticks);
+stf_result load_in_double(const void *buffer, size_t size);
 
 double angle_in_double(unsigned ticks)
 {
@@ -20,4 +21,19 @@ double angle_in_double(unsigned ticks)
         return -1;
     stf_world_destroy(world);
     return atan2(end.position.y, end.position.x);
+}
+
+/* What a double world says to a saved one. */
+stf_result load_in_double(const void *buffer, size_t size)
+{
+    const stf_world_def def = {0};
+    stf_world *world;
+
+    if (stf_world_create(&def, &world) != STF_OK)
+        return STF_ERROR_MEMORY;
+
+    const stf_result result = stf_world_load(world, buffer, size, NULL);
+
+    stf_world_destroy(world);
+    return result;
 }
