@@ -128,7 +128,8 @@ STF_API stf_vector stf_world_gravity(const stf_world *world);
 
 /*
  * Runs `ticks` ticks: each is `substeps` steps of the integrator of step / substeps seconds. Allocates nothing and calls no
- * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite.
+ * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite. At every tick
+ * whose number is a multiple of STF_SETTLE_TICKS, what is smaller than STF_AT_REST becomes 0 (see particle.h).
  * Many ticks in one call cost less than many calls where no link force is: each block stays in cache for all of them.
  */
 STF_API stf_result stf_world_step(stf_world *world, unsigned ticks);

@@ -32,6 +32,29 @@ static void keep_previous(const plan *p, unsigned tick, size_t at, size_t length
         memcpy(storage->previous + at, storage->position + at, length * sizeof(stf_real));
 }
 
+static bool settles(const plan *p, unsigned tick) { return (p->world->ticks + tick + 1) % STF_SETTLE_TICKS == 0; }
+
+/* These blocks, while they are in cache. */
+static void settle(const stf_world *world, size_t first_block, size_t blocks)
+{
+    const stf_storage *storage = &world->storage;
+    const size_t length = stf_world_block_length(world), at = first_block * length;
+    stf_real *history[STF_HISTORY_ARRAYS_MAX];
+
+    for (int k = 0; k < world->integrator->history_arrays; k++)
+        history[k] = storage->history[k] + at;
+    world->kernels->settle(blocks * length, storage->position + at, storage->velocity + at, history,
+                           world->integrator->history_arrays);
+}
+
+static void settle_part(void *context, unsigned part)
+{
+    const stf_range *range = context;
+    const size_t begin = range->blocks * part / range->parts, end = range->blocks * (part + 1) / range->parts;
+
+    settle(range->world, range->first_block + begin, end - begin);
+}
+
 /* All ticks of one range, so that a block is read from memory once for all of them. */
 static void step_range(const plan *p, stf_range *range)
 {
@@ -46,6 +69,8 @@ static void step_range(const plan *p, stf_range *range)
             world->stepper->step(&range->system, p->dt);
             range->system.history_stale = false;
         }
+        if (settles(p, tick))
+            stf_world_run(world, range->parts, settle_part, range);
     }
 }
 
@@ -70,6 +95,8 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
             world->stepper->step_flight(&flight, p->dt);
             flight.history_stale = false;
         }
+        if (settles(p, tick))
+            settle(world, first_block, blocks);
     }
 }
 

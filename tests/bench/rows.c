@@ -63,6 +63,23 @@ static void free_group(bench_group *g, const bench_precision *p, const char *int
     }
 }
 
+/* Slow numbers: drag has brought all that moves below the smallest normal number, but for what the library does about it. */
+static void rest_rows(bench_group *g, const bench_precision *p, const char *name, bench_kind kind, const char *integrator,
+                      size_t n)
+{
+    const size_t rest = add_case(g, p, (bench_scene){kind, LIBRARY_AT_REST, integrator, n}, (double)n);
+    const size_t motion = add_case(g, p, (bench_scene){kind, LIBRARY, integrator, n}, (double)n);
+
+    compare(add_row(g, p, name, rest, "ns/particle"), RATIO, motion, motion, 1.1);
+}
+
+static void rest_group(bench_group *g, const bench_precision *p, size_t n)
+{
+    rest_rows(g, p, "at rest, semi_implicit_euler", SLOWING, EULER, n);
+    rest_rows(g, p, "at rest, rk4", SLOWING, RK4, n);
+    rest_rows(g, p, "at rest, anchored springs", HUNG, EULER, n);
+}
+
 /* 2: the general path, block by block. */
 static void field_group(bench_group *g, const bench_precision *p, size_t n)
 {
@@ -232,6 +249,7 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         small_groups(&g, p, &to);
         if (quick)
             continue;
+        rest_group(fresh(&g), p, counts[COUNT_OF(counts) - 2]), give(&g, &to);
         machine_group(fresh(&g), p, counts[COUNT_OF(counts) - 1]), give(&g, &to);
         pairs_group(fresh(&g), p, 10000, false), give(&g, &to);
     }
