@@ -24,27 +24,32 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
 /* False for a NaN, which marks a history that is none. */
 static inline bool is_at_rest(stf_real x) { return x < STF_AT_REST && x > -STF_AT_REST; }
 
-static void settle_history(size_t n, stf_real *restrict history, const stf_real *restrict v)
+/* What belongs to the state: its history, or its rest. */
+static void settle_beside(size_t n, stf_real *restrict array, const stf_real *restrict state)
 {
     for (size_t i = 0; i < n; i++)
-        history[i] = is_at_rest(v[i]) & is_at_rest(history[i]) ? 0 * history[i] : history[i];
+        array[i] = is_at_rest(state[i]) & is_at_rest(array[i]) ? 0 * array[i] : array[i];
 }
 
-static void settle_state(size_t n, stf_real *restrict x, stf_real *restrict v)
+static void settle_state(size_t n, stf_real *restrict state)
 {
-    for (size_t i = 0; i < n; i++) {
-        x[i] = is_at_rest(x[i]) ? 0 * x[i] : x[i];
-        v[i] = is_at_rest(v[i]) ? 0 * v[i] : v[i];
+    for (size_t i = 0; i < n; i++)
+        state[i] = is_at_rest(state[i]) ? 0 * state[i] : state[i];
+}
+
+static void settle(const stf_flight *flight)
+{
+    const size_t lanes = flight->stride / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
+    const size_t n = flight->blocks * flight->dimensions * lanes;
+
+    for (int k = 0; k < STF_HISTORY_ARRAYS_MAX && flight->history[k]; k++)
+        settle_beside(n, flight->history[k], flight->velocity);
+    if (flight->position_rest) {
+        settle_beside(n, flight->position_rest, flight->position);
+        settle_beside(n, flight->velocity_rest, flight->velocity);
     }
-}
-
-static void settle(size_t length, stf_real *position, stf_real *velocity, stf_real *const *history, int history_arrays)
-{
-    const size_t n = length / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
-
-    for (int k = 0; k < history_arrays; k++)
-        settle_history(n, history[k], velocity);
-    settle_state(n, position, velocity);
+    settle_state(n, flight->position);
+    settle_state(n, flight->velocity);
 }
 
 #ifndef STF_VARIANT

@@ -26,8 +26,8 @@ typedef struct stf_kernels {
     void (*accelerate)(const stf_flight *flight, size_t blocks, const stf_real *inverse_mass, const stf_real *velocity,
                        stf_real *a);
 
-    /* What is smaller than STF_AT_REST becomes 0, in `length` components and the history that they have. */
-    void (*settle)(size_t length, stf_real *position, stf_real *velocity, stf_real *const *history, int history_arrays);
+    /* What is smaller than STF_AT_REST becomes 0, whatever acts on these blocks. */
+    void (*settle)(const stf_flight *flight);
 } stf_kernels;
 
 extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;

@@ -51,7 +51,8 @@ typedef enum stf_result {
     STF_ERROR_FORCE,      /* no force has this id */
     STF_ERROR_PARAMETERS, /* a negative or non-finite coefficient, a spring from a particle to itself, records
                              for a force that has none */
-    STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays */
+    STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays; an integrator
+                             that does not compensate, for a world that does */
     STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
     STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
     STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over */

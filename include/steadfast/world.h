@@ -27,12 +27,15 @@ typedef struct stf_world_def {
     size_t capacity;                  /* particles to make room for; a world grows when it must, but never in a step */
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
+    bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: for
+                                         long runs, and far from the origin in float. What is read out is the rounded state. Costs
+                                         two vectors a particle, and their way through memory */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
-/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator; half an
-   allocator; tasks without run). */
+/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator, also one
+   without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */

@@ -34,17 +34,22 @@ static void keep_previous(const plan *p, unsigned tick, size_t at, size_t length
 
 static bool settles(const plan *p, unsigned tick) { return (p->world->ticks + tick + 1) % STF_SETTLE_TICKS == 0; }
 
-/* These blocks, while they are in cache. */
-static void settle(const stf_world *world, size_t first_block, size_t blocks)
+static stf_flight flight_of(const stf_world *world, size_t first_block, size_t blocks)
 {
     const stf_storage *storage = &world->storage;
-    const size_t length = stf_world_block_length(world), at = first_block * length;
-    stf_real *history[STF_HISTORY_ARRAYS_MAX];
+    const size_t at = first_block * stf_world_block_length(world);
+    stf_flight flight;
 
-    for (int k = 0; k < world->integrator->history_arrays; k++)
-        history[k] = storage->history[k] + at;
-    world->kernels->settle(blocks * length, storage->position + at, storage->velocity + at, history,
-                           world->integrator->history_arrays);
+    stf_flight_start(&flight, world);
+    flight.blocks = blocks;
+    flight.inverse_mass = storage->inverse_mass + first_block * storage->stride;
+    flight.position = storage->position + at;
+    flight.velocity = storage->velocity + at;
+    flight.position_rest = stf_world_at(storage->position_rest, at);
+    flight.velocity_rest = stf_world_at(storage->velocity_rest, at);
+    for (int k = 0; k < storage->history_arrays; k++)
+        flight.history[k] = storage->history[k] + at;
+    return flight;
 }
 
 static void settle_part(void *context, unsigned part)
@@ -52,7 +57,9 @@ static void settle_part(void *context, unsigned part)
     const stf_range *range = context;
     const size_t begin = range->blocks * part / range->parts, end = range->blocks * (part + 1) / range->parts;
 
-    settle(range->world, range->first_block + begin, end - begin);
+    const stf_flight blocks = flight_of(range->world, range->first_block + begin, end - begin);
+
+    range->world->kernels->settle(&blocks);
 }
 
 /* All ticks of one range, so that a block is read from memory once for all of them. */
@@ -79,15 +86,8 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
 {
     const stf_world *world = p->world;
     const size_t at = first_block * stf_world_block_length(world);
-    stf_flight flight;
+    stf_flight flight = flight_of(world, first_block, blocks);
 
-    stf_flight_start(&flight, world);
-    flight.blocks = blocks;
-    flight.inverse_mass = world->storage.inverse_mass + first_block * world->storage.stride;
-    flight.position = world->storage.position + at;
-    flight.velocity = world->storage.velocity + at;
-    for (int k = 0; k < world->storage.history_arrays; k++)
-        flight.history[k] = world->storage.history[k] + at;
     flight.history_stale = world->history_stale;
     for (unsigned tick = 0; tick < p->ticks; tick++) {
         keep_previous(p, tick, at, blocks * stf_world_block_length(world));
@@ -96,7 +96,7 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
             flight.history_stale = false;
         }
         if (settles(p, tick))
-            settle(world, first_block, blocks);
+            world->kernels->settle(&flight);
     }
 }
 

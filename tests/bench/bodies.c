@@ -193,6 +193,7 @@ stf_world *bench_world_create(const bench_scene *scene, stf_allocator allocator)
     const stf_world_def def = {.integrator = stf_integrator_find(scene->integrator),
                                .step = (double)law.dt,
                                .gravity = {law.gravity[0], law.gravity[1], law.gravity[2]},
+                               .compensated = scene->form == LIBRARY_COMPENSATED,
                                .allocator = allocator,
                                .parallel = scene->form == LIBRARY_THREADS ? bench_threads() : (stf_parallel){0}};
     stf_world *world = NULL;

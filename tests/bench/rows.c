@@ -80,6 +80,18 @@ static void rest_group(bench_group *g, const bench_precision *p, size_t n)
     rest_rows(g, p, "at rest, anchored springs", HUNG, EULER, n);
 }
 
+/* What compensation costs where it is wanted. */
+static void compensated_group(bench_group *g, const bench_precision *p, bench_kind kind, const char *integrator, size_t n)
+{
+    const bench_scene plain = {kind, LIBRARY, integrator, n}, compensated = {kind, LIBRARY_COMPENSATED, integrator, n};
+    const double items = kind == CLOTH ? (double)bench_springs(&plain) : (double)n;
+    const size_t without = add_case(g, p, plain, items), with = add_case(g, p, compensated, items);
+    char name[NAME_MAX_LENGTH];
+
+    snprintf(name, sizeof name, "compensated, %s", kind == CLOTH ? "cloth" : integrator);
+    compare(add_row(g, p, name, with, kind == CLOTH ? "ns/spring" : "ns/particle"), RATIO, without, without, 0);
+}
+
 /* 2: the general path, block by block. */
 static void field_group(bench_group *g, const bench_precision *p, size_t n)
 {
@@ -212,6 +224,14 @@ static bench_group *fresh(bench_group *g)
 
 static void give(bench_group *g, const taker *to) { to->take(g, to->user); }
 
+static void compensated_groups(bench_group *g, const bench_precision *p, const taker *to, bool quick)
+{
+    for (size_t i = 0; i < COUNT_OF(integrators); i++)
+        for (size_t c = 0; c < COUNT_OF(counts) - 1 && (!quick || counts[c] <= QUICK_MOST); c += c == 0 ? 2 : 1)
+            compensated_group(fresh(g), p, FREE, integrators[i], counts[c]), give(g, to);
+    compensated_group(fresh(g), p, CLOTH, EULER, 64 * 64), give(g, to);
+}
+
 static void small_groups(bench_group *g, const bench_precision *p, const taker *to)
 {
     static const size_t small[] = {0, 1, 10, 100};
@@ -247,6 +267,7 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         for (size_t c = 0; c < COUNT_OF(counts) - 1 && (!quick || counts[c] <= QUICK_MOST); c += 3)
             field_group(fresh(&g), p, counts[c]), give(&g, &to);
         small_groups(&g, p, &to);
+        compensated_groups(&g, p, &to, quick);
         if (quick)
             continue;
         rest_group(fresh(&g), p, counts[COUNT_OF(counts) - 2]), give(&g, &to);

@@ -26,6 +26,7 @@ typedef enum bench_form {
     LIBRARY,
     LIBRARY_SHUFFLED, /* springs in random order */
     LIBRARY_AT_REST,  /* slowed by drag until velocities are as small as reals get */
+    LIBRARY_COMPENSATED,
     LIBRARY_THREADS,  /* on two threads */
     REFERENCE,        /* the loop of the integrator; of springs, runs; of pairs, tiles */
     EDGES,            /* a gather and a scatter a spring */
