@@ -28,7 +28,7 @@ static inline bool is_at_rest(stf_real x) { return x < STF_AT_REST && x > -STF_A
 static void settle_beside(size_t n, stf_real *restrict array, const stf_real *restrict state)
 {
     for (size_t i = 0; i < n; i++)
-        array[i] = is_at_rest(state[i]) & is_at_rest(array[i]) ? 0 * array[i] : array[i];
+        array[i] = is_at_rest(state[i]) && is_at_rest(array[i]) ? 0 * array[i] : array[i];
 }
 
 static void settle_state(size_t n, stf_real *restrict state)

@@ -1,8 +1,8 @@
 /*
- * Compensated positions and velocities: the error of a sum does not grow with the number of its terms. Each step adds a term d of
- * a few roundings, so that after a path of sum |d| the state is off by ROUNDINGS eps of that path, however many steps it took
- * (D. Goldberg, ACM Computing Surveys 23, 5 (1991), theorem 8: two of them are the sum's, the others those of d itself: RK4's has
- * seven, and the last is that of the bound's own terms of eps^2 n).
+ * Compensated positions and velocities: the error of a sum does not grow with the number of its terms. Each step adds a term d
+ * of a few roundings, so that after a path of sum |d| the state is off by ROUNDINGS eps of that path, in however many steps.
+ * Two of them are the sum's (D. Goldberg, ACM Computing Surveys 23, 5 (1991), theorem 8), up to seven those of d itself
+ * (RK4's), one is that of the bound's own terms of n eps^2.
  */
 #define _POSIX_C_SOURCE 200112L /* setenv */
 
@@ -18,7 +18,8 @@
 #define ROUNDINGS 10
 
 /* One particle of 1 kg in one dimension. */
-static stf_world *line_world(const stf_integrator *integrator, bool compensated, double step, double position, double velocity)
+static stf_world *line_world(const stf_integrator *integrator, bool compensated, double step, double position,
+                             double velocity)
 {
     stf_world *world =
         make_world((stf_world_def){.dimensions = 1, .integrator = integrator, .step = step, .compensated = compensated});
@@ -36,7 +37,7 @@ static stf_particle run(stf_world *world, unsigned ticks)
     return p;
 }
 
-/* ---- accuracy -------------------------------------------------------------------------------------------------------------- */
+/* ---- accuracy ------------------------------------------------------------------------------------------------------------ */
 
 #define TICKS 1000000U
 #define TICK (1.0 / 60)
@@ -44,8 +45,8 @@ static stf_particle run(stf_world *world, unsigned ticks)
 
 static void show(const char *motion, const stf_integrator *integrator, double plain, double compensated, double exact)
 {
-    print_message("%-14s  %-19s  relative error after %u ticks: plain %.1e, compensated %.1e\n", motion, integrator->name, TICKS,
-                  fabs(plain / exact - 1), fabs(compensated / exact - 1));
+    print_message("%-14s  %-19s  relative error after %u ticks: plain %.1e, compensated %.1e\n", motion,
+                  integrator->name, TICKS, fabs(plain / exact - 1), fabs(compensated / exact - 1));
 }
 
 static void uniform_motion_is_off_by_as_much_after_a_million_ticks_as_after_one(void **state)
@@ -64,7 +65,7 @@ static void uniform_motion_is_off_by_as_much_after_a_million_ticks_as_after_one(
     }
 }
 
-/* x(n) = g h^2 times n (n - 1) / 2 for explicit Euler, n (n + 1) / 2 for semi-implicit Euler, n^2 / 2 for all methods of order 2. */
+/* x(n) = g h^2 times n (n - 1) / 2 for explicit Euler, n (n + 1) / 2 for semi-implicit Euler, n^2 / 2 for all others. */
 static void a_fall_is_off_by_as_much_after_a_million_ticks_as_after_one(void **state)
 {
     (void)state;
@@ -113,7 +114,7 @@ static void an_oscillator_is_as_far_off_with_small_steps_as_with_large_ones(void
             long double x = 1, v = 0;
 
             add_force(world, &stf_force_anchored_springs, &(stf_anchored_spring){.stiffness = 1});
-            oscillate(steps[i], h, neutral[k] == &stf_semi_implicit_euler ? h : h / 2, &x, &v);
+            oscillate(steps[i], (long double)h, (long double)(neutral[k] == &stf_semi_implicit_euler ? h : h / 2), &x, &v);
             const stf_particle p = run(world, steps[i]);
             assert_close(p.position.x, x, bound);
             assert_close(p.velocity.x, v, bound + lag);
@@ -133,7 +134,7 @@ static void what_freezes_far_from_the_origin_moves_at_its_speed(void **state)
     }
 }
 
-/* ---- the same bits however it is run --------------------------------------------------------------------------------------- */
+/* ---- the same bits however it is run ------------------------------------------------------------------------------------- */
 
 #define PARTICLES (8 * STF_BLOCK_MAX + 3) /* a part has at least 4 blocks */
 #define RUN_TICKS 100
@@ -155,8 +156,9 @@ static void run_backwards(void *user, unsigned tasks, void (*task)(void *context
 /* In free flight, or with a force that does nothing but choose another path through the library. */
 static stf_world *crowd(const stf_integrator *integrator, const stf_force *idle, unsigned tasks)
 {
-    stf_world *world = make_world((stf_world_def){.integrator = integrator, .compensated = true, .gravity = {0, (stf_real)-9.81, 1},
-                                                  .parallel = {.run = run_backwards, .tasks = tasks}});
+    const stf_parallel parallel = {.run = run_backwards, .tasks = tasks};
+    stf_world *world = make_world((stf_world_def){.integrator = integrator, .compensated = true, .parallel = parallel,
+                                                  .gravity = {0, (stf_real)-9.81, 1}});
     uint64_t seed = 5;
 
     for (size_t i = 0; i < PARTICLES; i++) {
@@ -231,7 +233,7 @@ static void every_instruction_set_gives_the_same_bits(void **state)
     free(before);
 }
 
-/* ---- what is kept ------------------------------------------------------------------------------------------------------------ */
+/* ---- what is kept -------------------------------------------------------------------------------------------------------- */
 
 static void a_loaded_and_a_restored_world_step_on_with_the_same_bits(void **state)
 {
@@ -404,7 +406,7 @@ static void another_integrator_or_step_does_not_take_the_rest_of_a_difference(vo
     stf_world_destroy(world);
 }
 
-/* ---- who may ---------------------------------------------------------------------------------------------------------------- */
+/* ---- who may ------------------------------------------------------------------------------------------------------------- */
 
 #define TINY ((stf_real)(STF_AT_REST / 4))
 

@@ -1,4 +1,4 @@
-/* Coming to rest: what is smaller than STF_AT_REST becomes 0 at every tick whose number is a multiple of STF_SETTLE_TICKS, and nothing else does. */
+/* Coming to rest: what is smaller than STF_AT_REST becomes 0 at every multiple of STF_SETTLE_TICKS ticks, and nothing else. */
 #define _POSIX_C_SOURCE 200112L /* setenv */
 
 #include <math.h>
@@ -99,7 +99,8 @@ static void what_is_below_the_threshold_becomes_zero_and_keeps_its_sign(void **s
 
     for (size_t i = 0; i < COUNT_OF(given); i++) {
         const stf_real plus = settles[i] ? 0 : given[i], minus = settles[i] ? negative_zero() : -given[i];
-        const stf_particle early = after(STF_SETTLE_TICKS - 1, given[i], -given[i]), late = after(STF_SETTLE_TICKS, given[i], -given[i]);
+        const stf_particle early = after(STF_SETTLE_TICKS - 1, given[i], -given[i]);
+        const stf_particle late = after(STF_SETTLE_TICKS, given[i], -given[i]);
         const stf_particle other = after(STF_SETTLE_TICKS, -given[i], given[i]);
 
         assert_true(is_bitwise(early.position.x, given[i]) && is_bitwise(early.velocity.x, -given[i]));
@@ -155,7 +156,7 @@ static void what_is_not_finite_is_left_alone(void **state)
     stf_world_destroy(world);
 }
 
-/* ---- scenes that come to rest ---------------------------------------------------------------------------------------------- */
+/* ---- scenes that come to rest -------------------------------------------------------------------------------------------- */
 
 #define PARTICLES (8 * STF_BLOCK_MAX + 1) /* a part has at least 4 blocks */
 #define STEP 0.5
@@ -186,7 +187,7 @@ static stf_world *decaying_world(decay kind, const stf_integrator *integrator, d
     return world;
 }
 
-/* How long it takes until what was so large is below the smallest real; a spring's swing has half the rate. A tick behind the last that settles. */
+/* How long it takes until what was so large is below the smallest real, and a tick more; a spring's swing has half the rate. */
 static unsigned ticks_to_rest(double size)
 {
     const double ticks = (log(size) + DIGITS_OF_RANGE * log(10)) / (DRAG / 2 * STEP);

@@ -42,8 +42,7 @@ struct stf_system {
     double time;        /* s, when the step starts */
     stf_real *position; /* m */
     stf_real *velocity; /* m/s */
-    stf_real *position_rest, *velocity_rest; /* NULL, or in a world that compensates what rounding left of position and velocity,
-                                                which the next step adds: the state is the sum of both. See STF_COMPENSATES */
+    stf_real *position_rest, *velocity_rest; /* NULL, or in a world that compensates what rounding left: see STF_COMPENSATES */
     stf_real *work[STF_WORK_ARRAYS_MAX];       /* scratch: as many as the descriptor says; undefined when a step starts */
     stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as many as the descriptor says; kept from step to step, and per particle */
     bool history_stale; /* something came between the step before and this one. The history of a particle that was added or set
@@ -96,9 +95,9 @@ enum {
     STF_SYMPLECTIC = 1 << 0, /* for forces of position alone: energy errors stay bounded */
     STF_REVERSIBLE = 1 << 1, /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
     /*
-     * Where the system has rests its steps add them, and leave in them what rounding leaves (src/sum.h), so that it may step a
-     * world that compensates. A particle that was added or set has rests of 0; where the integrator is changed that of velocity
-     * becomes 0.
+     * May step a world that compensates: where the system has rests, x += d is y = d + rest, s = x + y, rest = y - (s - x),
+     * x = s (W. Kahan, Comm. ACM 8, 40 (1965)), and v likewise. A particle that was added or set has rests of 0; where the
+     * integrator is changed that of velocity becomes 0, since it may be that of another sum which stands for the velocity.
      */
     STF_COMPENSATES = 1 << 2
 };

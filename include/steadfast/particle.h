@@ -27,11 +27,11 @@ typedef struct stf_particle {
 } stf_particle;
 
 /*
- * Coming to rest. Arithmetic below the smallest normal number is slow on most machines, and a particle that drag or a damper slows
- * down would end there and stay. So at every tick whose number (stf_world_ticks) is a multiple of STF_SETTLE_TICKS, each
- * component of a position or velocity that is smaller than STF_AT_REST becomes a 0 of its sign, however it came about; also one
- * that was set so, and that of an immovable particle. With a velocity goes what the integrator keeps of that component, where
- * that is as small. Nothing depends on modes of the processor: the bits are the same everywhere.
+ * Coming to rest. Arithmetic below the smallest normal number is slow on most machines, and a particle that drag or a damper
+ * slows down would end there and stay. So at every tick whose number (stf_world_ticks) is a multiple of STF_SETTLE_TICKS, each
+ * component of a position or velocity that is smaller than STF_AT_REST becomes a 0 of its sign, however it came about: also one
+ * that was set so, and that of an immovable particle. With it go its rest and, with a velocity, what the integrator keeps of
+ * that component, where they are as small. Nothing depends on modes of the processor: the bits are the same everywhere.
  *
  * STF_AT_REST is 2^7 times the root of the smallest normal number, as forces square distances and speeds, and a step and a
  * coefficient of together 2^-14 come on top. In float it is 0.4 nm a year.

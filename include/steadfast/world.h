@@ -27,9 +27,9 @@ typedef struct stf_world_def {
     size_t capacity;                  /* particles to make room for; a world grows when it must, but never in a step */
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
-    bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: for
-                                         long runs, and far from the origin in float. What is read out is the rounded state. Costs
-                                         two vectors a particle, and their way through memory */
+    bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: in
+                                         float for long runs and places far from the origin. What is read out is the rounded
+                                         state. Costs two vectors a particle, and their way through memory */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
@@ -150,7 +150,8 @@ STF_API double stf_world_step_size(const stf_world *world);
 STF_API stf_result stf_world_set_substeps(stf_world *world, unsigned substeps);
 STF_API unsigned stf_world_substeps(const stf_world *world);
 
-/* Errors: NULL, DESCRIPTOR, MEMORY. Cost: a copy of the world if this integrator needs more arrays than any before. */
+/* Errors: NULL, DESCRIPTOR (as stf_world_create), MEMORY. Cost: a copy of the world if this integrator needs more arrays than
+   any before. */
 STF_API stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator);
 STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
 

@@ -9,8 +9,8 @@ bool stf_world_is_step(double step, unsigned substeps)
 
 static bool is_integrator(const stf_integrator *integrator, bool compensated)
 {
-    return (integrator->flags & STF_COMPENSATES || !compensated) && integrator->name && integrator->step && integrator->work_arrays >= 0 &&
-           integrator->work_arrays <= STF_WORK_ARRAYS_MAX && integrator->history_arrays >= 0 &&
+    return integrator->name && integrator->step && (!compensated || (integrator->flags & STF_COMPENSATES) != 0) &&
+           integrator->work_arrays >= 0 && integrator->work_arrays <= STF_WORK_ARRAYS_MAX && integrator->history_arrays >= 0 &&
            integrator->history_arrays <= STF_HISTORY_ARRAYS_MAX;
 }
 
