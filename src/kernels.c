@@ -21,6 +21,37 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
         }
 }
 
+/* False for a NaN, which marks a history that is none. */
+static inline bool is_at_rest(stf_real x) { return x < STF_AT_REST && x > -STF_AT_REST; }
+
+/* What belongs to the state: its history, or its rest. */
+static void settle_beside(size_t n, stf_real *restrict array, const stf_real *restrict state)
+{
+    for (size_t i = 0; i < n; i++)
+        array[i] = is_at_rest(state[i]) && is_at_rest(array[i]) ? 0 * array[i] : array[i];
+}
+
+static void settle_state(size_t n, stf_real *restrict state)
+{
+    for (size_t i = 0; i < n; i++)
+        state[i] = is_at_rest(state[i]) ? 0 * state[i] : state[i];
+}
+
+static void settle(const stf_flight *flight)
+{
+    const size_t lanes = flight->stride / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
+    const size_t n = flight->blocks * flight->dimensions * lanes;
+
+    for (int k = 0; k < STF_HISTORY_ARRAYS_MAX && flight->history[k]; k++)
+        settle_beside(n, flight->history[k], flight->velocity);
+    if (flight->position_rest) {
+        settle_beside(n, flight->position_rest, flight->position);
+        settle_beside(n, flight->velocity_rest, flight->velocity);
+    }
+    settle_state(n, flight->position);
+    settle_state(n, flight->velocity);
+}
+
 #ifndef STF_VARIANT
 #define NAME stf_kernels_baseline
 #define TEXT "baseline"
@@ -38,4 +69,5 @@ static const stf_force *const forces[] = {
     &stf_force_springs,     &stf_force_all_pairs_gravity, NULL,
 };
 
-const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate};
+const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate,
+                           .settle = settle};

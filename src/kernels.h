@@ -25,6 +25,9 @@ typedef struct stf_kernels {
     /* a = gravity - (drag / m) v + F / m, 0 for the immovable, of so many blocks. `a` holds F and gets a. */
     void (*accelerate)(const stf_flight *flight, size_t blocks, const stf_real *inverse_mass, const stf_real *velocity,
                        stf_real *a);
+
+    /* What is smaller than STF_AT_REST becomes 0, whatever acts on these blocks. */
+    void (*settle)(const stf_flight *flight);
 } stf_kernels;
 
 extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;

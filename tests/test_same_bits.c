@@ -19,7 +19,7 @@
 #define GOLDEN UINT64_C(0x0b57fae0ef6227c2)
 typedef uint64_t real_bits;
 #else
-#define GOLDEN UINT64_C(0x1fe66a1a41599265)
+#define GOLDEN UINT64_C(0x9c37937d851e9c66)
 typedef uint32_t real_bits;
 #endif
 

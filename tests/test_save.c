@@ -408,7 +408,8 @@ static void each_lie_has_its_own_error(void **state)
         {AT_BYTES, 8, 0, STF_ERROR_ALTERED},
         {AT_REAL, 4, 12 - real, STF_ERROR_PRECISION},
         {AT_DIMENSIONS, 4, 3, STF_ERROR_MISMATCH},
-        {AT_FLAGS, 4, 2 + 8, STF_ERROR_ALTERED},
+        {AT_FLAGS, 4, 2 + 8, STF_ERROR_MISMATCH}, /* compensated */
+        {AT_FLAGS, 4, 2 + 16, STF_ERROR_ALTERED},
         {AT_SUBSTEPS, 4, 0, STF_ERROR_SUBSTEPS},
         {AT_STEP, 8, bits_of(-1), STF_ERROR_STEP},
         {AT_STEP, 8, bits_of((double)NAN), STF_ERROR_STEP},
@@ -484,6 +485,7 @@ static void what_does_not_match_is_named(void **state)
         {{.dimensions = 2}, {&stf_force_linear_drag, &wind}, "dimensions", "", 0},
         {{.keep_previous = true}, {&stf_force_linear_drag, &wind}, "keep_previous", "", 0},
         {{.keep_radius = true}, {&stf_force_linear_drag, &wind}, "keep_radius", "", 0},
+        {{.compensated = true}, {&stf_force_linear_drag, &wind}, "compensated", "", 0},
         {{.integrator = &stf_rk4}, {&stf_force_linear_drag, &wind}, "integrator", "semi_implicit_euler", 0},
         {{.integrator = &eulers}, {&stf_force_linear_drag, &wind}, "history_arrays", "semi_implicit_euler", 0},
         {{.step = 1}, {&stf_force_linear_drag}, "force count", "", 0},

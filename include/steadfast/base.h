@@ -51,7 +51,8 @@ typedef enum stf_result {
     STF_ERROR_FORCE,      /* no force has this id */
     STF_ERROR_PARAMETERS, /* a negative or non-finite coefficient, a spring from a particle to itself, records
                              for a force that has none */
-    STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays */
+    STF_ERROR_DESCRIPTOR, /* an integrator or force whose descriptor is incomplete or asks for too many arrays; an integrator
+                             that does not compensate, for a world that does */
     STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
     STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
     STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over */
@@ -90,8 +91,8 @@ typedef struct stf_allocator {
  * The engine's threads. `run` calls task(context, index) once for every index below `tasks`, on any threads and in any order,
  * and returns when all are done. All zero: the caller's thread does all. The bits never depend on it, as long as all threads
  * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
- * force acts; else for each acceleration, each round of a link in it, and each loop of the integrator. A task wants some
- * 16 KiB of stack.
+ * force acts; else for each acceleration, each round of a link in it, each loop of the integrator, and every
+ * STF_SETTLE_TICKS ticks. A task wants some 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);

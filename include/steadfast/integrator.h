@@ -42,6 +42,7 @@ struct stf_system {
     double time;        /* s, when the step starts */
     stf_real *position; /* m */
     stf_real *velocity; /* m/s */
+    stf_real *position_rest, *velocity_rest; /* NULL, or in a world that compensates what rounding left: see STF_COMPENSATES */
     stf_real *work[STF_WORK_ARRAYS_MAX];       /* scratch: as many as the descriptor says; undefined when a step starts */
     stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as many as the descriptor says; kept from step to step, and per particle */
     bool history_stale; /* something came between the step before and this one. The history of a particle that was added or set
@@ -82,6 +83,7 @@ typedef struct stf_flight {
     unsigned dimensions;          /* rows a block: position[(block * dimensions + d) * stride + i] */
     stf_real *position;           /* m */
     stf_real *velocity;           /* m/s */
+    stf_real *position_rest, *velocity_rest; /* as in stf_system */
     const stf_real *inverse_mass; /* 1/kg, [block * stride + i] */
     stf_real *history[STF_HISTORY_ARRAYS_MAX]; /* as in stf_system; NULL beyond those that the world has */
     bool history_stale;                        /* as in stf_system */
@@ -91,11 +93,17 @@ typedef struct stf_flight {
 
 enum {
     STF_SYMPLECTIC = 1 << 0, /* for forces of position alone: energy errors stay bounded */
-    STF_REVERSIBLE = 1 << 1  /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
+    STF_REVERSIBLE = 1 << 1, /* for forces of position alone: turn all velocities round and it runs back, but for round-off */
+    /*
+     * May step a world that compensates: where the system has rests, x += d is y = d + rest, s = x + y, rest = y - (s - x),
+     * x = s (W. Kahan, Comm. ACM 8, 40 (1965)), and v likewise. A particle that was added or set has rests of 0; where the
+     * integrator is changed that of velocity becomes 0, since it may be that of another sum which stands for the velocity.
+     */
+    STF_COMPENSATES = 1 << 2
 };
 
 /* name and step are required, and the arrays that step uses; step_flight makes it faster; the rest is for people and
-   instruments, and no step reads it. */
+   instruments (flags also for creation), and no step reads it. */
 typedef struct stf_integrator {
     const char *name; /* "rk4" */
     void (*step)(stf_system *system, stf_real dt); /* dt in s */
@@ -107,7 +115,7 @@ typedef struct stf_integrator {
     int history_arrays;         /* 0 to STF_HISTORY_ARRAYS_MAX */
     double real_stability;      /* the k dt (k: linear drag over mass) below which nothing grows */
     double imaginary_stability; /* the omega dt of an undamped spring below which nothing grows; 0: every step grows */
-    unsigned flags;             /* STF_SYMPLECTIC | STF_REVERSIBLE */
+    unsigned flags;             /* STF_SYMPLECTIC | STF_REVERSIBLE | STF_COMPENSATES */
 } stf_integrator;
 
 /* Orders, evaluations and stability limits of each are in its descriptor; its formula and source are in src/integrators/. */

@@ -15,8 +15,8 @@
  *     stf_world_restore(world, memory, size);                    // the input has come and was another: run the tick anew
  *
  * A world that is saved and loaded, or restored, steps on with the bits that it would have had: particles, previous positions,
- * radii, the integrator's history, ticks, time, step, substeps, gravity, the records and ids of forces. Code can't be saved:
- * integrator and forces are matched with those of the world that is loaded into.
+ * radii, rests, the integrator's history, ticks, time, step, substeps, gravity, the records and ids of forces. Code can't be
+ * saved: integrator and forces are matched with those of the world that is loaded into.
  */
 #ifndef STEADFAST_SAVE_H
 #define STEADFAST_SAVE_H
@@ -42,18 +42,18 @@ STF_API stf_result stf_world_save(const stf_world *world, void *buffer, size_t s
 
 /* What of a world is not as it was saved. */
 typedef struct stf_mismatch {
-    const char *what; /* "dimensions", "keep_previous", "keep_radius", "integrator", "history_arrays" (of the integrator of that
-                         name), "force count"; of one force "name", "kind", "fields". NULL: nothing */
+    const char *what; /* "dimensions", "keep_previous", "keep_radius", "compensated", "integrator", "history_arrays" (of the
+                         integrator of that name), "force count"; of one force "name", "kind", "fields". NULL: nothing */
     size_t force;     /* which force, as stf_world_force_at counts; of others 0 */
     char saved[48];   /* the name of the saved integrator or force, cut off if it is longer; of others empty */
 } stf_mismatch;
 
 /*
  * Makes the world what was saved in buffer[size]; size is what it was saved with. The world has to have the same
- * dimensions, keep_previous and keep_radius, an integrator of the same name and the same forces: as many, in the same order,
- * each with the name, kind and fields that it had. Its particles, records, time and settings are replaced, and ids of forces
- * are those of the saved world. A force with STF_NOT_SAVED keeps the records that it has here; those have to suit the saved
- * particles. Allocator and threads stay.
+ * dimensions, keep_previous, keep_radius and compensated, an integrator of the same name and the same forces: as many, in the
+ * same order, each with the name, kind and fields that it had. Its particles, records, time and settings are replaced, and ids
+ * of forces are those of the saved world. A force with STF_NOT_SAVED keeps the records that it has here; those have to suit the
+ * saved particles. Allocator and threads stay.
  *
  * Nothing in the buffer is believed: lengths are checked against it, values as if they were given to stf_world_add and
  * stf_world_add_force. Errors: FOREIGN (no saved world), VERSION, TRUNCATED, ALTERED, PRECISION (saved by the other one),
@@ -82,9 +82,9 @@ STF_API stf_result stf_world_snapshot(const stf_world *world, void *memory, size
  * Cost: as stf_world_snapshot; records that have changed are arranged anew. Allocates nothing: a world's room for particles and
  * for the records of a force never shrinks, but for stf_world_load, after which there may be too little for earlier records.
  *
- * Another world takes the snapshot as well, to look ahead in a copy, if it has the same dimensions, keep_previous and
- * keep_radius, room (stf_world_reserve; records as many as there were; an integrator with as many history arrays), and forces
- * with the same ids and descriptors.
+ * Another world takes the snapshot as well, to look ahead in a copy, if it has the same dimensions, keep_previous,
+ * keep_radius and compensated, room (stf_world_reserve; records as many as there were; an integrator with as many history
+ * arrays), and forces with the same ids and descriptors.
  */
 STF_API stf_result stf_world_restore(stf_world *world, const void *memory, size_t size);
 

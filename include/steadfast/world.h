@@ -27,12 +27,15 @@ typedef struct stf_world_def {
     size_t capacity;                  /* particles to make room for; a world grows when it must, but never in a step */
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
+    bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: in
+                                         float for long runs and places far from the origin. What is read out is the rounded
+                                         state. Costs two vectors a particle, and their way through memory */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
-/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator; half an
-   allocator; tasks without run). */
+/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator, also one
+   without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
@@ -128,7 +131,8 @@ STF_API stf_vector stf_world_gravity(const stf_world *world);
 
 /*
  * Runs `ticks` ticks: each is `substeps` steps of the integrator of step / substeps seconds. Allocates nothing and calls no
- * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite.
+ * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite. At every tick
+ * whose number is a multiple of STF_SETTLE_TICKS, what is smaller than STF_AT_REST becomes 0 (see particle.h).
  * Many ticks in one call cost less than many calls where no link force is: each block stays in cache for all of them.
  */
 STF_API stf_result stf_world_step(stf_world *world, unsigned ticks);
@@ -146,7 +150,8 @@ STF_API double stf_world_step_size(const stf_world *world);
 STF_API stf_result stf_world_set_substeps(stf_world *world, unsigned substeps);
 STF_API unsigned stf_world_substeps(const stf_world *world);
 
-/* Errors: NULL, DESCRIPTOR, MEMORY. Cost: a copy of the world if this integrator needs more arrays than any before. */
+/* Errors: NULL, DESCRIPTOR (as stf_world_create), MEMORY. Cost: a copy of the world if this integrator needs more arrays than
+   any before. */
 STF_API stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator);
 STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
 

@@ -5,36 +5,45 @@
 #include "../flight.h"
 
 /* x(n+1) = x(n) + v(n) dt;  v(n+1) = v(n) + a(n) dt */
-static inline void explicit_euler(stf_real *x, stf_real *v, stf_real a, stf_real dt)
+static inline void explicit_euler(stf_element *e, stf_real a, stf_real dt)
 {
-    *x += *v * dt;
-    *v += a * dt;
+    stf_drift(e, e->v * dt);
+    stf_kick(e, a * dt);
 }
 
 /* v(n+1) = v(n) + a(n) dt;  x(n+1) = x(n) + v(n+1) dt */
-static inline void semi_implicit_euler(stf_real *x, stf_real *v, stf_real a, stf_real dt)
+static inline void semi_implicit_euler(stf_element *e, stf_real a, stf_real dt)
 {
-    *v += a * dt;
-    *x += *v * dt;
+    stf_kick(e, a * dt);
+    stf_drift(e, e->v * dt);
 }
 
-static void explicit_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+/* `formula` and `compensated` are constants at each call. */
+STF_INLINE void euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                          stf_real *restrict v_rest, const stf_real *restrict a, stf_real dt, bool compensated,
+                          void (*formula)(stf_element *e, stf_real a, stf_real dt))
 {
-    for (size_t i = 0; i < n; i++)
-        explicit_euler(&x[i], &v[i], a[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        formula(&e, a[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+    }
 }
 
-static void semi_implicit_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict a,
-                                    stf_real dt)
+STF_INLINE void euler_loop(stf_system *p, stf_real dt, void (*formula)(stf_element *e, stf_real a, stf_real dt))
 {
-    for (size_t i = 0; i < n; i++)
-        semi_implicit_euler(&x[i], &v[i], a[i], dt);
+    if (p->position_rest)
+        euler_all(p->length, p->position, p->velocity, p->position_rest, p->velocity_rest, p->work[0], dt, true, formula);
+    else
+        euler_all(p->length, p->position, p->velocity, NULL, NULL, p->work[0], dt, false, formula);
 }
 
-static void explicit_euler_loop(stf_system *part, stf_real dt)
-{
-    explicit_euler_all(part->length, part->position, part->velocity, part->work[0], dt);
-}
+static void explicit_euler_loop(stf_system *part, stf_real dt) { euler_loop(part, dt, explicit_euler); }
 
 static void explicit_euler_step(stf_system *system, stf_real dt)
 {
@@ -44,15 +53,12 @@ static void explicit_euler_step(stf_system *system, stf_real dt)
 
 static inline void explicit_euler_element(stf_element *e, stf_fall fall, stf_real dt)
 {
-    explicit_euler(&e->x, &e->v, stf_fall_acceleration(fall, e->v), dt);
+    explicit_euler(e, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void explicit_euler_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, explicit_euler_element); }
 
-static void semi_implicit_euler_loop(stf_system *part, stf_real dt)
-{
-    semi_implicit_euler_all(part->length, part->position, part->velocity, part->work[0], dt);
-}
+static void semi_implicit_euler_loop(stf_system *part, stf_real dt) { euler_loop(part, dt, semi_implicit_euler); }
 
 static void semi_implicit_euler_step(stf_system *system, stf_real dt)
 {
@@ -62,7 +68,7 @@ static void semi_implicit_euler_step(stf_system *system, stf_real dt)
 
 static inline void semi_implicit_euler_element(stf_element *e, stf_fall fall, stf_real dt)
 {
-    semi_implicit_euler(&e->x, &e->v, stf_fall_acceleration(fall, e->v), dt);
+    semi_implicit_euler(e, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void semi_implicit_euler_flight(const stf_flight *flight, stf_real dt)
@@ -79,6 +85,7 @@ const stf_integrator stf_explicit_euler = {
     .work_arrays = 1,
     .real_stability = 2,
     .imaginary_stability = 0, /* |1 + i z| > 1 for every z */
+    .flags = STF_COMPENSATES,
 };
 
 const stf_integrator stf_semi_implicit_euler = {
@@ -90,5 +97,5 @@ const stf_integrator stf_semi_implicit_euler = {
     .work_arrays = 1,
     .real_stability = 2,
     .imaginary_stability = 2,
-    .flags = STF_SYMPLECTIC,
+    .flags = STF_SYMPLECTIC | STF_COMPENSATES,
 };

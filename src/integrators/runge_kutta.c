@@ -32,17 +32,26 @@ static void predict_all(size_t n, stf_real *restrict stage_x, stf_real *restrict
 /* ---- midpoint ------------------------------------------------------------------------------------------------------------ */
 
 /* x(n+1) = x(n) + v2 dt;  v(n+1) = v(n) + a2 dt, where 2 is the stage at dt / 2 */
-static inline void midpoint(stf_real *x, stf_real *v, stf_real v2, stf_real a2, stf_real dt)
+static inline void midpoint(stf_element *e, stf_real v2, stf_real a2, stf_real dt)
 {
-    *x += v2 * dt;
-    *v += a2 * dt;
+    stf_drift(e, v2 * dt);
+    stf_kick(e, a2 * dt);
 }
 
-static void midpoint_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
-                         const stf_real *restrict a2, stf_real dt)
+STF_INLINE void midpoint_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                             stf_real *restrict v_rest, const stf_real *restrict v2, const stf_real *restrict a2, stf_real dt,
+                             bool compensated)
 {
-    for (size_t i = 0; i < n; i++)
-        midpoint(&x[i], &v[i], v2[i], a2[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        midpoint(&e, v2[i], a2[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+    }
 }
 
 /* Work arrays: a, and x and v of the stage. */
@@ -51,9 +60,12 @@ static void midpoint_predict_loop(stf_system *part, stf_real dt)
     predict_all(part->length, part->work[1], part->work[2], part->position, part->velocity, part->work[0], HALF * dt);
 }
 
-static void midpoint_loop(stf_system *part, stf_real dt)
+static void midpoint_loop(stf_system *p, stf_real dt)
 {
-    midpoint_all(part->length, part->position, part->velocity, part->work[2], part->work[0], dt);
+    if (p->position_rest)
+        midpoint_all(p->length, p->position, p->velocity, p->position_rest, p->velocity_rest, p->work[2], p->work[0], dt, true);
+    else
+        midpoint_all(p->length, p->position, p->velocity, NULL, NULL, p->work[2], p->work[0], dt, false);
 }
 
 static void midpoint_step(stf_system *system, stf_real dt)
@@ -70,7 +82,7 @@ static inline void midpoint_element(stf_element *e, stf_fall fall, stf_real dt)
 {
     const stage s = advance(e->x, e->v, e->v, stf_fall_acceleration(fall, e->v), HALF * dt);
 
-    midpoint(&e->x, &e->v, s.v, stf_fall_acceleration(fall, s.v), dt);
+    midpoint(e, s.v, stf_fall_acceleration(fall, s.v), dt);
 }
 
 static void midpoint_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, midpoint_element); }
@@ -78,17 +90,26 @@ static void midpoint_flight(const stf_flight *flight, stf_real dt) { stf_fly(fli
 /* ---- improved Euler ------------------------------------------------------------------------------------------------------ */
 
 /* x(n+1) = x(n) + (v1 + v2) dt / 2;  v(n+1) = v(n) + (a1 + a2) dt / 2, where 2 is the stage at dt */
-static inline void improved_euler(stf_real *x, stf_real *v, stf_real v2, stf_real a1, stf_real a2, stf_real dt)
+static inline void improved_euler(stf_element *e, stf_real v2, stf_real a1, stf_real a2, stf_real dt)
 {
-    *x += (*v + v2) * (HALF * dt);
-    *v += (a1 + a2) * (HALF * dt);
+    stf_drift(e, (e->v + v2) * (HALF * dt));
+    stf_kick(e, (a1 + a2) * (HALF * dt));
 }
 
-static void improved_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict v2,
-                               const stf_real *restrict a1, const stf_real *restrict a2, stf_real dt)
+STF_INLINE void improved_euler_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                                   stf_real *restrict v_rest, const stf_real *restrict v2, const stf_real *restrict a1,
+                                   const stf_real *restrict a2, stf_real dt, bool compensated)
 {
-    for (size_t i = 0; i < n; i++)
-        improved_euler(&x[i], &v[i], v2[i], a1[i], a2[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        improved_euler(&e, v2[i], a1[i], a2[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+    }
 }
 
 /* Work arrays: a1, a2, and x and v of the stage. */
@@ -97,9 +118,14 @@ static void improved_euler_predict_loop(stf_system *part, stf_real dt)
     predict_all(part->length, part->work[2], part->work[3], part->position, part->velocity, part->work[0], dt);
 }
 
-static void improved_euler_loop(stf_system *part, stf_real dt)
+static void improved_euler_loop(stf_system *p, stf_real dt)
 {
-    improved_euler_all(part->length, part->position, part->velocity, part->work[3], part->work[0], part->work[1], dt);
+    const stf_real *a1 = p->work[0], *a2 = p->work[1], *v2 = p->work[3];
+
+    if (p->position_rest)
+        improved_euler_all(p->length, p->position, p->velocity, p->position_rest, p->velocity_rest, v2, a1, a2, dt, true);
+    else
+        improved_euler_all(p->length, p->position, p->velocity, NULL, NULL, v2, a1, a2, dt, false);
 }
 
 static void improved_euler_step(stf_system *system, stf_real dt)
@@ -117,7 +143,7 @@ static inline void improved_euler_element(stf_element *e, stf_fall fall, stf_rea
     const stf_real a1 = stf_fall_acceleration(fall, e->v);
     const stage s = advance(e->x, e->v, e->v, a1, dt);
 
-    improved_euler(&e->x, &e->v, s.v, a1, stf_fall_acceleration(fall, s.v), dt);
+    improved_euler(e, s.v, a1, stf_fall_acceleration(fall, s.v), dt);
 }
 
 static void improved_euler_flight(const stf_flight *flight, stf_real dt)
@@ -136,10 +162,10 @@ typedef struct sums {
 static inline sums add_middle(sums sum, stf_real v, stf_real a) { return (sums){.v = sum.v + 2 * v, .a = sum.a + 2 * a}; }
 
 /* x(n+1) = x(n) + dt sum / 6, v likewise. (dt sum) / 6, as a rounded dt / 6 would bias every step. */
-static inline void rk4(stf_real *x, stf_real *v, sums sum, stf_real v4, stf_real a4, stf_real dt)
+static inline void rk4(stf_element *e, sums sum, stf_real v4, stf_real a4, stf_real dt)
 {
-    *x += dt * (sum.v + v4) / 6;
-    *v += dt * (sum.a + a4) / 6;
+    stf_drift(e, dt * (sum.v + v4) / 6);
+    stf_kick(e, dt * (sum.a + a4) / 6);
 }
 
 /* The first stage's slopes start the sums, and the second stage starts from x and v along them. */
@@ -171,11 +197,20 @@ static void rk4_middle_all(size_t n, stf_real *restrict stage_x, stf_real *restr
     }
 }
 
-static void rk4_all(size_t n, stf_real *restrict x, stf_real *restrict v, const stf_real *restrict sum_v,
-                    const stf_real *restrict sum_a, const stf_real *restrict v4, const stf_real *restrict a4, stf_real dt)
+STF_INLINE void rk4_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                        stf_real *restrict v_rest, const stf_real *restrict sum_v, const stf_real *restrict sum_a,
+                        const stf_real *restrict v4, const stf_real *restrict a4, stf_real dt, bool compensated)
 {
-    for (size_t i = 0; i < n; i++)
-        rk4(&x[i], &v[i], (sums){.v = sum_v[i], .a = sum_a[i]}, v4[i], a4[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        rk4(&e, (sums){.v = sum_v[i], .a = sum_a[i]}, v4[i], a4[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+    }
 }
 
 /* Work arrays: a, x and v of the stage, and the two sums. */
@@ -191,9 +226,14 @@ static void rk4_middle_loop(stf_system *part, stf_real dt)
                    part->work[0], dt);
 }
 
-static void rk4_loop(stf_system *part, stf_real dt)
+static void rk4_loop(stf_system *p, stf_real dt)
 {
-    rk4_all(part->length, part->position, part->velocity, part->work[3], part->work[4], part->work[2], part->work[0], dt);
+    const stf_real *sum_v = p->work[3], *sum_a = p->work[4], *v4 = p->work[2], *a4 = p->work[0];
+
+    if (p->position_rest)
+        rk4_all(p->length, p->position, p->velocity, p->position_rest, p->velocity_rest, sum_v, sum_a, v4, a4, dt, true);
+    else
+        rk4_all(p->length, p->position, p->velocity, NULL, NULL, sum_v, sum_a, v4, a4, dt, false);
 }
 
 static void rk4_step(stf_system *system, stf_real dt)
@@ -221,7 +261,7 @@ static inline void rk4_element(stf_element *e, stf_fall fall, stf_real dt)
     const stage four = advance(e->x, e->v, three.v, a3, dt);
     const sums sum = add_middle(add_middle((sums){.v = e->v, .a = a1}, two.v, a2), three.v, a3);
 
-    rk4(&e->x, &e->v, sum, four.v, stf_fall_acceleration(fall, four.v), dt);
+    rk4(e, sum, four.v, stf_fall_acceleration(fall, four.v), dt);
 }
 
 static void rk4_flight(const stf_flight *flight, stf_real dt) { stf_fly(flight, dt, false, rk4_element); }
@@ -238,6 +278,7 @@ const stf_integrator stf_midpoint = {
     .work_arrays = 3,
     .real_stability = 2,
     .imaginary_stability = 0,
+    .flags = STF_COMPENSATES,
 };
 
 const stf_integrator stf_improved_euler = {
@@ -249,6 +290,7 @@ const stf_integrator stf_improved_euler = {
     .work_arrays = 4,
     .real_stability = 2,
     .imaginary_stability = 0,
+    .flags = STF_COMPENSATES,
 };
 
 /* R(z) = 1 + z + z^2 / 2 + z^3 / 6 + z^4 / 24: R = 1 at z = -2.785..., |R| = 1 at z = 2 sqrt(2) i. */
@@ -261,4 +303,5 @@ const stf_integrator stf_rk4 = {
     .work_arrays = 5,
     .real_stability = 2.7852935634052822,
     .imaginary_stability = 2.8284271247461903,
+    .flags = STF_COMPENSATES,
 };

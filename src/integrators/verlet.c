@@ -13,46 +13,59 @@
 
 /*
  * d(n+1) = d(n) + a(n) dt^2;  x(n+1) = x(n) + d(n+1), which is x(n+1) = 2 x(n) - x(n-1) + a(n) dt^2 without its cancellation:
- * d is kept, never computed as a difference of positions.
- * v(n+1) = d(n+1) / dt + a(n) dt / 2: the difference is the velocity half a step ago.
+ * d is kept, never computed as a difference of positions. It is what the method adds to in place of the velocity, whose rest it
+ * takes: v(n+1) = d(n+1) / dt + a(n) dt / 2, as the difference is the velocity half a step ago.
  */
-static inline void position_verlet(stf_real *x, stf_real *v, stf_real *d, stf_real a, stf_real dt)
+static inline void position_verlet(stf_element *e, stf_real a, stf_real dt)
 {
-    *d += a * dt * dt;
-    *x += *d;
-    *v = *d / dt + a * (HALF * dt);
+    stf_sum_add(&e->history, &e->v_rest, a * dt * dt, e->compensated);
+    stf_drift(e, e->history);
+    e->v = e->history / dt + a * (HALF * dt);
 }
 
 /* The difference that led here, from the Taylor series, where there is none: d(n) = v(n) dt - a(n) dt^2 / 2. */
-static inline stf_real position_verlet_start(stf_real d, stf_real v, stf_real a, stf_real dt)
+static inline void position_verlet_start(stf_element *e, stf_real a, stf_real dt)
 {
-    const stf_real start = (v - a * (HALF * dt)) * dt;
+    const stf_real start = (e->v - a * (HALF * dt)) * dt;
+    const bool is_known = e->history == e->history;
 
-    return d == d ? d : start;
+    e->history = is_known ? e->history : start;
+    e->v_rest = is_known ? e->v_rest : 0;
 }
 
-static void position_verlet_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict d,
-                                const stf_real *restrict a, stf_real dt)
+/* `formula` and `compensated` are constants at each call. */
+STF_INLINE void position_verlet_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                                    stf_real *restrict v_rest, stf_real *restrict d, const stf_real *restrict a, stf_real dt,
+                                    bool compensated, void (*formula)(stf_element *e, stf_real a, stf_real dt))
 {
-    for (size_t i = 0; i < n; i++)
-        position_verlet(&x[i], &v[i], &d[i], a[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .history = d[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        formula(&e, a[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+        d[i] = e.history;
+    }
 }
 
-static void position_verlet_start_all(size_t n, stf_real *restrict d, const stf_real *restrict v,
-                                      const stf_real *restrict a, stf_real dt)
+STF_INLINE void position_verlet_each(stf_system *p, stf_real dt, void (*formula)(stf_element *e, stf_real a, stf_real dt))
 {
-    for (size_t i = 0; i < n; i++)
-        d[i] = position_verlet_start(d[i], v[i], a[i], dt);
+    stf_real *x = p->position, *v = p->velocity, *a = p->work[0], *d = p->history[0];
+
+    if (p->position_rest)
+        position_verlet_all(p->length, x, v, p->position_rest, p->velocity_rest, d, a, dt, true, formula);
+    else
+        position_verlet_all(p->length, x, v, NULL, NULL, d, a, dt, false, formula);
 }
 
 static void position_verlet_loop(stf_system *part, stf_real dt)
 {
-    const size_t n = part->length;
-    stf_real *x = part->position, *v = part->velocity, *a = part->work[0], *d = part->history[0];
-
     if (part->history_stale)
-        position_verlet_start_all(n, d, v, a, dt);
-    position_verlet_all(n, x, v, d, a, dt);
+        position_verlet_each(part, dt, position_verlet_start);
+    position_verlet_each(part, dt, position_verlet);
 }
 
 static void position_verlet_step(stf_system *system, stf_real dt)
@@ -63,12 +76,12 @@ static void position_verlet_step(stf_system *system, stf_real dt)
 
 static inline void position_verlet_element_start(stf_element *e, stf_fall fall, stf_real dt)
 {
-    e->history = position_verlet_start(e->history, e->v, stf_fall_acceleration(fall, e->v), dt);
+    position_verlet_start(e, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static inline void position_verlet_element(stf_element *e, stf_fall fall, stf_real dt)
 {
-    position_verlet(&e->x, &e->v, &e->history, stf_fall_acceleration(fall, e->v), dt);
+    position_verlet(e, stf_fall_acceleration(fall, e->v), dt);
 }
 
 static void position_verlet_flight(const stf_flight *flight, stf_real dt)
@@ -79,39 +92,63 @@ static void position_verlet_flight(const stf_flight *flight, stf_real dt)
 }
 
 /* v(n+1/2) = v(n) + a(n) dt / 2;  x(n+1) = x(n) + v(n+1/2) dt;  returns the predicted v(n+1) = v(n+1/2) + a(n) dt / 2 */
-static inline stf_real velocity_verlet_first(stf_real *x, stf_real *v, stf_real a, stf_real dt)
+static inline stf_real velocity_verlet_first(stf_element *e, stf_real a, stf_real dt)
 {
     const stf_real kick = a * (HALF * dt);
 
-    *v += kick;
-    *x += *v * dt;
-    return *v + kick;
+    stf_kick(e, kick);
+    stf_drift(e, e->v * dt);
+    return e->v + kick;
 }
 
 /* v(n+1) = v(n+1/2) + a(n+1) dt / 2 */
-static inline void velocity_verlet_second(stf_real *v, stf_real a, stf_real dt) { *v += a * (HALF * dt); }
+static inline void velocity_verlet_second(stf_element *e, stf_real a, stf_real dt) { stf_kick(e, a * (HALF * dt)); }
 
-static void velocity_verlet_first_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict predicted_v,
-                                      const stf_real *restrict a, stf_real dt)
+STF_INLINE void velocity_verlet_first_all(size_t n, stf_real *restrict x, stf_real *restrict v, stf_real *restrict x_rest,
+                                          stf_real *restrict v_rest, stf_real *restrict predicted_v, const stf_real *restrict a,
+                                          stf_real dt, bool compensated)
 {
-    for (size_t i = 0; i < n; i++)
-        predicted_v[i] = velocity_verlet_first(&x[i], &v[i], a[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.x = x[i], .v = v[i], .compensated = compensated};
+        if (compensated)
+            e.x_rest = x_rest[i], e.v_rest = v_rest[i];
+        predicted_v[i] = velocity_verlet_first(&e, a[i], dt);
+        x[i] = e.x;
+        v[i] = e.v;
+        if (compensated)
+            x_rest[i] = e.x_rest, v_rest[i] = e.v_rest;
+    }
 }
 
-static void velocity_verlet_second_all(size_t n, stf_real *restrict v, const stf_real *restrict a, stf_real dt)
+STF_INLINE void velocity_verlet_second_all(size_t n, stf_real *restrict v, stf_real *restrict v_rest,
+                                           const stf_real *restrict a, stf_real dt, bool compensated)
 {
-    for (size_t i = 0; i < n; i++)
-        velocity_verlet_second(&v[i], a[i], dt);
+    for (size_t i = 0; i < n; i++) {
+        stf_element e = {.v = v[i], .v_rest = compensated ? v_rest[i] : 0, .compensated = compensated};
+        velocity_verlet_second(&e, a[i], dt);
+        v[i] = e.v;
+        if (compensated)
+            v_rest[i] = e.v_rest;
+    }
 }
 
-static void velocity_verlet_first_loop(stf_system *part, stf_real dt)
+static void velocity_verlet_first_loop(stf_system *p, stf_real dt)
 {
-    velocity_verlet_first_all(part->length, part->position, part->velocity, part->work[0], part->history[0], dt);
+    stf_real *predicted_v = p->work[0], *a = p->history[0];
+
+    if (p->position_rest)
+        velocity_verlet_first_all(p->length, p->position, p->velocity, p->position_rest, p->velocity_rest, predicted_v, a, dt,
+                                  true);
+    else
+        velocity_verlet_first_all(p->length, p->position, p->velocity, NULL, NULL, predicted_v, a, dt, false);
 }
 
-static void velocity_verlet_second_loop(stf_system *part, stf_real dt)
+static void velocity_verlet_second_loop(stf_system *p, stf_real dt)
 {
-    velocity_verlet_second_all(part->length, part->velocity, part->history[0], dt);
+    if (p->velocity_rest)
+        velocity_verlet_second_all(p->length, p->velocity, p->velocity_rest, p->history[0], dt, true);
+    else
+        velocity_verlet_second_all(p->length, p->velocity, NULL, p->history[0], dt, false);
 }
 
 static void velocity_verlet_step(stf_system *system, stf_real dt)
@@ -133,10 +170,10 @@ static inline void velocity_verlet_element_start(stf_element *e, stf_fall fall, 
 
 static inline void velocity_verlet_element(stf_element *e, stf_fall fall, stf_real dt)
 {
-    const stf_real predicted_v = velocity_verlet_first(&e->x, &e->v, e->history, dt);
+    const stf_real predicted_v = velocity_verlet_first(e, e->history, dt);
 
     e->history = stf_fall_acceleration(fall, predicted_v);
-    velocity_verlet_second(&e->v, e->history, dt);
+    velocity_verlet_second(e, e->history, dt);
 }
 
 static void velocity_verlet_flight(const stf_flight *flight, stf_real dt)
@@ -156,7 +193,7 @@ const stf_integrator stf_position_verlet = {
     .history_arrays = 1,
     .real_stability = 1,
     .imaginary_stability = 2,
-    .flags = STF_SYMPLECTIC, /* its positions could be run backwards, but not from the velocity that it reports */
+    .flags = STF_SYMPLECTIC | STF_COMPENSATES, /* it could be run backwards, but not from the velocity that it reports */
 };
 
 const stf_integrator stf_velocity_verlet = {
@@ -169,5 +206,5 @@ const stf_integrator stf_velocity_verlet = {
     .history_arrays = 1,
     .real_stability = 1,
     .imaginary_stability = 2,
-    .flags = STF_SYMPLECTIC | STF_REVERSIBLE,
+    .flags = STF_SYMPLECTIC | STF_REVERSIBLE | STF_COMPENSATES,
 };

@@ -207,6 +207,8 @@ static void loop_part(void *context, unsigned index)
     part.length = end - begin;
     part.position += begin;
     part.velocity += begin;
+    part.position_rest = stf_world_at(part.position_rest, begin);
+    part.velocity_rest = stf_world_at(part.velocity_rest, begin);
     for (int k = 0; k < call->range->world->storage.work_arrays; k++)
         part.work[k] += begin;
     for (int k = 0; k < call->range->world->storage.history_arrays; k++)
@@ -234,6 +236,8 @@ static void place_range(stf_range *range, size_t first_block)
     range->first_block = first_block;
     range->system.position = storage->position + at;
     range->system.velocity = storage->velocity + at;
+    range->system.position_rest = stf_world_at(storage->position_rest, at);
+    range->system.velocity_rest = stf_world_at(storage->velocity_rest, at);
     for (int k = 0; k < storage->history_arrays; k++)
         range->system.history[k] = storage->history[k] + at;
 }

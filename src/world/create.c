@@ -7,10 +7,10 @@ bool stf_world_is_step(double step, unsigned substeps)
     return integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX && isfinite(step);
 }
 
-static bool is_integrator(const stf_integrator *integrator)
+static bool is_integrator(const stf_integrator *integrator, bool compensated)
 {
-    return integrator->name && integrator->step && integrator->work_arrays >= 0 &&
-           integrator->work_arrays <= STF_WORK_ARRAYS_MAX && integrator->history_arrays >= 0 &&
+    return integrator->name && integrator->step && (!compensated || (integrator->flags & STF_COMPENSATES) != 0) &&
+           integrator->work_arrays >= 0 && integrator->work_arrays <= STF_WORK_ARRAYS_MAX && integrator->history_arrays >= 0 &&
            integrator->history_arrays <= STF_HISTORY_ARRAYS_MAX;
 }
 
@@ -50,7 +50,7 @@ static stf_result check_def(const stf_world_def *def)
         return STF_ERROR_DIMENSIONS;
     if (!stf_world_is_step(def->step, def->substeps))
         return STF_ERROR_STEP;
-    if (!is_integrator(def->integrator))
+    if (!is_integrator(def->integrator, def->compensated))
         return STF_ERROR_DESCRIPTOR;
     return stf_world_check_gravity(def->gravity, def->dimensions);
 }
@@ -83,6 +83,7 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
         .substeps = def.substeps,
         .keep_previous = def.keep_previous,
         .keep_radius = def.keep_radius,
+        .compensated = def.compensated,
         .step = def.step,
         .history_stale = true,
     };
@@ -114,7 +115,7 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
 {
     if (!world || !integrator)
         return STF_ERROR_NULL;
-    if (!is_integrator(integrator))
+    if (!is_integrator(integrator, world->compensated))
         return STF_ERROR_DESCRIPTOR;
 
     const stf_result no_room = stf_storage_require(world, world->count, integrator, false);
@@ -124,6 +125,7 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
     if (integrator != world->integrator) {
         stf_world_clear_history(world);
         stf_world_forget_history(world, 0, world->count);
+        stf_world_clear_velocity_rest(world);
     }
     world->integrator = integrator;
     world->stepper = stf_kernels_integrator(world->kernels, integrator);

@@ -72,6 +72,8 @@ static void append_state(text *t, const stf_world *world)
         append_row(t, "previous position", 0, vector, "one pass a tick");
     if (world->keep_radius)
         append_row(t, "radius", 0, real, "");
+    if (world->compensated)
+        append_row(t, "rests of position and velocity", 0, 2 * vector, "");
     append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
     append_row(t, "gravity, linear drag", 0, 0, "in flight part of the integrator's pass, else of F / m");
 }

@@ -26,7 +26,7 @@
 #define STF_SAVE_START_BYTES (STF_SAVE_MAGIC_BYTES + 4 + 8) /* magic, version, bytes in all */
 #define STF_SAVE_CHECKSUM_BYTES ((size_t)4)
 
-enum { STF_SAVE_PREVIOUS = 1 << 0, STF_SAVE_RADIUS = 1 << 1, STF_SAVE_STALE = 1 << 2 };
+enum { STF_SAVE_PREVIOUS = 1 << 0, STF_SAVE_RADIUS = 1 << 1, STF_SAVE_STALE = 1 << 2, STF_SAVE_COMPENSATED = 1 << 3 };
 
 static inline void stf_bytes_put(unsigned char *to, uint64_t number, size_t bytes)
 {

@@ -84,6 +84,8 @@ static stf_result match_head(const saved *s, const stf_world *world, stf_mismatc
         return differs(mismatch, "keep_previous", 0, none);
     if (!(s->flags & STF_SAVE_RADIUS) == world->keep_radius)
         return differs(mismatch, "keep_radius", 0, none);
+    if (!(s->flags & STF_SAVE_COMPENSATED) == world->compensated)
+        return differs(mismatch, "compensated", 0, none);
     if (!stf_is_text(s->integrator, world->integrator->name))
         return differs(mismatch, "integrator", 0, s->integrator);
     if (s->history_arrays != (uint32_t)world->integrator->history_arrays)
@@ -101,7 +103,7 @@ static stf_result check_head(const saved *s)
         return STF_ERROR_STEP;
     if (!isfinite(s->step_start_time))
         return STF_ERROR_NOT_FINITE;
-    if (s->step_start_tick > s->ticks || s->flags > (STF_SAVE_PREVIOUS | STF_SAVE_RADIUS | STF_SAVE_STALE))
+    if (s->step_start_tick > s->ticks || s->flags >= STF_SAVE_COMPENSATED << 1)
         return STF_ERROR_ALTERED;
     return stf_world_check_gravity(s->gravity, s->dimensions);
 }

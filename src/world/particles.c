@@ -37,6 +37,14 @@ static stf_vector get_vector(const stf_world *world, const stf_real *array, size
     return (stf_vector){components[0], components[1], components[2]};
 }
 
+static void clear_rests(const stf_world *world, size_t index)
+{
+    if (!world->storage.position_rest)
+        return;
+    put_vector(world, world->storage.position_rest, index, (stf_vector){0, 0, 0});
+    put_vector(world, world->storage.velocity_rest, index, (stf_vector){0, 0, 0});
+}
+
 /* All but the previous position and the history. */
 static void put_particle(stf_world *world, size_t index, const stf_particle *particle)
 {
@@ -44,6 +52,7 @@ static void put_particle(stf_world *world, size_t index, const stf_particle *par
 
     put_vector(world, storage->position, index, particle->position);
     put_vector(world, storage->velocity, index, particle->velocity);
+    clear_rests(world, index);
     storage->inverse_mass[index] = particle->inverse_mass;
     if (storage->radius)
         storage->radius[index] = particle->radius;
@@ -79,6 +88,8 @@ static void put_lanes(stf_world *world, size_t first, size_t n, const stf_partic
         }
         storage->inverse_mass[first + i] = particles[i].inverse_mass;
     }
+    for (size_t i = 0; i < n && storage->position_rest; i++)
+        clear_rests(world, first + i);
     for (size_t i = 0; i < n && storage->radius; i++)
         storage->radius[first + i] = particles[i].radius;
     for (unsigned d = 0; d < dimensions && storage->previous; d++)
@@ -236,6 +247,10 @@ stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
     put_particle(world, index, &particle);
     if (storage->previous)
         move_vector(world, storage->previous, last, index);
+    if (storage->position_rest) {
+        move_vector(world, storage->position_rest, last, index);
+        move_vector(world, storage->velocity_rest, last, index);
+    }
     for (int k = 0; k < storage->history_arrays; k++)
         move_vector(world, storage->history[k], last, index);
     put_particle(world, last, &(stf_particle){.inverse_mass = 0}); /* lanes without a particle are 0 */

@@ -39,7 +39,7 @@ static void put_string(writer *w, const char *text)
 static void put_head(writer *w, const stf_world *world, size_t bytes)
 {
     const unsigned flags = (world->keep_previous ? STF_SAVE_PREVIOUS : 0U) | (world->keep_radius ? STF_SAVE_RADIUS : 0U) |
-                           (world->history_stale ? STF_SAVE_STALE : 0U);
+                           (world->history_stale ? STF_SAVE_STALE : 0U) | (world->compensated ? STF_SAVE_COMPENSATED : 0U);
 
     put_characters(w, STF_SAVE_MAGIC, STF_SAVE_MAGIC_BYTES);
     put(w, STF_SAVE_VERSION, 4);

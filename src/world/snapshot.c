@@ -76,7 +76,8 @@ stf_result stf_world_snapshot(const stf_world *world, void *memory, size_t size)
 static bool has_room(const stf_world *world, const stf_world *then)
 {
     return world->dimensions == then->dimensions && world->keep_previous == then->keep_previous &&
-           world->keep_radius == then->keep_radius && world->storage.capacity >= then->count &&
+           world->keep_radius == then->keep_radius && world->compensated == then->compensated &&
+           world->storage.capacity >= then->count &&
            world->storage.history_arrays >= then->integrator->history_arrays &&
            world->storage.work_arrays >= then->integrator->work_arrays;
 }

@@ -32,6 +32,36 @@ static void keep_previous(const plan *p, unsigned tick, size_t at, size_t length
         memcpy(storage->previous + at, storage->position + at, length * sizeof(stf_real));
 }
 
+static bool settles(const plan *p, unsigned tick) { return (p->world->ticks + tick + 1) % STF_SETTLE_TICKS == 0; }
+
+static stf_flight flight_of(const stf_world *world, size_t first_block, size_t blocks)
+{
+    const stf_storage *storage = &world->storage;
+    const size_t at = first_block * stf_world_block_length(world);
+    stf_flight flight;
+
+    stf_flight_start(&flight, world);
+    flight.blocks = blocks;
+    flight.inverse_mass = storage->inverse_mass + first_block * storage->stride;
+    flight.position = storage->position + at;
+    flight.velocity = storage->velocity + at;
+    flight.position_rest = stf_world_at(storage->position_rest, at);
+    flight.velocity_rest = stf_world_at(storage->velocity_rest, at);
+    for (int k = 0; k < storage->history_arrays; k++)
+        flight.history[k] = storage->history[k] + at;
+    return flight;
+}
+
+static void settle_part(void *context, unsigned part)
+{
+    const stf_range *range = context;
+    const size_t begin = range->blocks * part / range->parts, end = range->blocks * (part + 1) / range->parts;
+
+    const stf_flight blocks = flight_of(range->world, range->first_block + begin, end - begin);
+
+    range->world->kernels->settle(&blocks);
+}
+
 /* All ticks of one range, so that a block is read from memory once for all of them. */
 static void step_range(const plan *p, stf_range *range)
 {
@@ -46,6 +76,8 @@ static void step_range(const plan *p, stf_range *range)
             world->stepper->step(&range->system, p->dt);
             range->system.history_stale = false;
         }
+        if (settles(p, tick))
+            stf_world_run(world, range->parts, settle_part, range);
     }
 }
 
@@ -54,15 +86,8 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
 {
     const stf_world *world = p->world;
     const size_t at = first_block * stf_world_block_length(world);
-    stf_flight flight;
+    stf_flight flight = flight_of(world, first_block, blocks);
 
-    stf_flight_start(&flight, world);
-    flight.blocks = blocks;
-    flight.inverse_mass = world->storage.inverse_mass + first_block * world->storage.stride;
-    flight.position = world->storage.position + at;
-    flight.velocity = world->storage.velocity + at;
-    for (int k = 0; k < world->storage.history_arrays; k++)
-        flight.history[k] = world->storage.history[k] + at;
     flight.history_stale = world->history_stale;
     for (unsigned tick = 0; tick < p->ticks; tick++) {
         keep_previous(p, tick, at, blocks * stf_world_block_length(world));
@@ -70,6 +95,8 @@ static void step_flight(const plan *p, size_t first_block, size_t blocks)
             world->stepper->step_flight(&flight, p->dt);
             flight.history_stale = false;
         }
+        if (settles(p, tick))
+            world->kernels->settle(&flight);
     }
 }
 

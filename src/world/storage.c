@@ -2,8 +2,8 @@
 
 #include "world.h"
 
-/* More rows than any lane has: 3 dimensions x (state, previous, history and work arrays), inverse mass, radius. */
-#define ARRAYS_BOUND (3 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX)
+/* More rows than any lane has: 3 dimensions x (state, its rests, previous, history and work arrays), inverse mass, radius. */
+#define ARRAYS_BOUND (5 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX)
 #define ROWS_BOUND (STF_DIMENSIONS_MAX * ARRAYS_BOUND + 2)
 
 /*
@@ -36,6 +36,8 @@ static void lay_out(stf_storage *storage, const stf_world *world)
     storage->inverse_mass = take(storage, storage->capacity);
     storage->previous = world->keep_previous ? take(storage, vectors) : NULL;
     storage->radius = world->keep_radius ? take(storage, storage->capacity) : NULL;
+    storage->position_rest = world->compensated ? take(storage, vectors) : NULL;
+    storage->velocity_rest = world->compensated ? take(storage, vectors) : NULL;
     for (int k = 0; k < storage->history_arrays; k++)
         storage->history[k] = take(storage, vectors);
     for (int k = 0; k < storage->work_arrays; k++)
@@ -61,6 +63,8 @@ static void copy_storage(stf_storage *to, const stf_storage *from, size_t dimens
 {
     copy_array(to->position, to, from->position, from, dimensions, count);
     copy_array(to->velocity, to, from->velocity, from, dimensions, count);
+    copy_array(to->position_rest, to, from->position_rest, from, dimensions, count);
+    copy_array(to->velocity_rest, to, from->velocity_rest, from, dimensions, count);
     copy_array(to->previous, to, from->previous, from, dimensions, count);
     copy_array(to->inverse_mass, to, from->inverse_mass, from, 1, count);
     copy_array(to->radius, to, from->radius, from, 1, count);
@@ -97,6 +101,10 @@ static void open_block(const stf_storage *storage, size_t dimensions, size_t blo
     memset(storage->position + block * vectors, 0, vectors * bytes);
     memset(storage->velocity + block * vectors, 0, vectors * bytes);
     memset(storage->inverse_mass + block * row, 0, row * bytes);
+    if (storage->position_rest) {
+        memset(storage->position_rest + block * vectors, 0, vectors * bytes);
+        memset(storage->velocity_rest + block * vectors, 0, vectors * bytes);
+    }
     if (storage->previous)
         memset(storage->previous + block * vectors, 0, vectors * bytes);
     if (storage->radius)
@@ -152,6 +160,10 @@ size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
         kept[n++] = (stf_kept){storage->previous, dimensions, STF_KEPT_FINITE};
     if (storage->radius)
         kept[n++] = (stf_kept){storage->radius, 1, STF_KEPT_RADIUS};
+    if (storage->position_rest) {
+        kept[n++] = (stf_kept){storage->position_rest, dimensions, STF_KEPT_FINITE};
+        kept[n++] = (stf_kept){storage->velocity_rest, dimensions, STF_KEPT_FINITE};
+    }
     for (int k = 0; k < world->integrator->history_arrays; k++)
         kept[n++] = (stf_kept){storage->history[k], dimensions, STF_KEPT_ANYTHING};
     return n;
@@ -169,6 +181,12 @@ void stf_world_clear_history(stf_world *world)
 
     for (int k = 0; k < storage->history_arrays; k++)
         clear_array(storage->history[k], storage, world->dimensions, world->count);
+}
+
+void stf_world_clear_velocity_rest(stf_world *world)
+{
+    if (world->storage.velocity_rest)
+        clear_array(world->storage.velocity_rest, &world->storage, world->dimensions, world->count);
 }
 
 static void fill(stf_real *row, size_t n, stf_real value)

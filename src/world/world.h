@@ -10,6 +10,7 @@
 #ifdef STF_DOUBLE
 #define stf_storage_require stf_storage_require_f64
 #define stf_world_clear_history stf_world_clear_history_f64
+#define stf_world_clear_velocity_rest stf_world_clear_velocity_rest_f64
 #define stf_world_forget_history stf_world_forget_history_f64
 #define stf_world_is_tied stf_world_is_tied_f64
 #define stf_world_is_free stf_world_is_free_f64
@@ -49,6 +50,7 @@ typedef struct stf_storage {
     bool whole;      /* work arrays are as large as the world, else as one block for each part of a step */
     int history_arrays, work_arrays;
     stf_real *position, *velocity, *previous;         /* [capacity * dimensions], in blocks; previous NULL if not kept */
+    stf_real *position_rest, *velocity_rest;          /* as position; NULL in worlds that do not compensate */
     stf_real *inverse_mass, *radius;                  /* [capacity]; radius NULL if not kept */
     stf_real *history[STF_HISTORY_ARRAYS_MAX];        /* as position */
     stf_real *work[STF_WORK_ARRAYS_MAX];
@@ -69,7 +71,7 @@ struct stf_world {
     const stf_kernels *kernels;
     const stf_integrator *integrator, *stepper; /* as given, and as this machine runs it fastest */
     unsigned dimensions, substeps;
-    bool keep_previous, keep_radius;
+    bool keep_previous, keep_radius, compensated;
     double step; /* s */
     uint64_t ticks, step_start_tick;
     double step_start_time; /* s, at step_start_tick */
@@ -105,8 +107,14 @@ static inline size_t stf_world_block_length(const stf_world *world) { return wor
 /* Sets all history to 0, in lanes of no particle too: another integrator may have left there what it liked. */
 void stf_world_clear_history(stf_world *world);
 
+/* The rest of the velocity is 0 for a start: another integrator may have made something else of it. */
+void stf_world_clear_velocity_rest(stf_world *world);
+
 /* Marks the history of `count` particles from `first` as none: NaN in every component. */
 void stf_world_forget_history(stf_world *world, size_t first, size_t count);
+
+/* An array that a world may have or not, from some place on. */
+static inline stf_real *stf_world_at(stf_real *array, size_t at) { return array ? array + at : NULL; }
 
 /* Where the first component of particle i stands in an array of vectors. */
 static inline size_t stf_world_offset(const stf_world *world, size_t i)
@@ -219,7 +227,7 @@ typedef struct stf_kept {
     enum { STF_KEPT_FINITE, STF_KEPT_INVERSE_MASS, STF_KEPT_RADIUS, STF_KEPT_ANYTHING } rule;
 } stf_kept;
 
-#define STF_KEPT_MAX (5 + STF_HISTORY_ARRAYS_MAX)
+#define STF_KEPT_MAX (7 + STF_HISTORY_ARRAYS_MAX)
 
 /* All that its integrator keeps of the world, in an order that depends on nothing else; returns how many. */
 size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);

@@ -63,6 +63,35 @@ static void free_group(bench_group *g, const bench_precision *p, const char *int
     }
 }
 
+/* Slow numbers: drag has brought all that moves below the smallest normal number, but for what the library does about it. */
+static void rest_rows(bench_group *g, const bench_precision *p, const char *name, bench_kind kind, const char *integrator,
+                      size_t n)
+{
+    const size_t rest = add_case(g, p, (bench_scene){kind, LIBRARY_AT_REST, integrator, n}, (double)n);
+    const size_t motion = add_case(g, p, (bench_scene){kind, LIBRARY, integrator, n}, (double)n);
+
+    compare(add_row(g, p, name, rest, "ns/particle"), RATIO, motion, motion, 1.1);
+}
+
+static void rest_group(bench_group *g, const bench_precision *p, size_t n)
+{
+    rest_rows(g, p, "at rest, semi_implicit_euler", SLOWING, EULER, n);
+    rest_rows(g, p, "at rest, rk4", SLOWING, RK4, n);
+    rest_rows(g, p, "at rest, anchored springs", HUNG, EULER, n);
+}
+
+/* What compensation costs where it is wanted. */
+static void compensated_group(bench_group *g, const bench_precision *p, bench_kind kind, const char *integrator, size_t n)
+{
+    const bench_scene plain = {kind, LIBRARY, integrator, n}, compensated = {kind, LIBRARY_COMPENSATED, integrator, n};
+    const double items = kind == CLOTH ? (double)bench_springs(&plain) : (double)n;
+    const size_t without = add_case(g, p, plain, items), with = add_case(g, p, compensated, items);
+    char name[NAME_MAX_LENGTH];
+
+    snprintf(name, sizeof name, "compensated, %s", kind == CLOTH ? "cloth" : integrator);
+    compare(add_row(g, p, name, with, kind == CLOTH ? "ns/spring" : "ns/particle"), RATIO, without, without, 0);
+}
+
 /* 2: the general path, block by block. */
 static void field_group(bench_group *g, const bench_precision *p, size_t n)
 {
@@ -195,6 +224,15 @@ static bench_group *fresh(bench_group *g)
 
 static void give(bench_group *g, const taker *to) { to->take(g, to->user); }
 
+/* In float, which is what wants it. */
+static void compensated_groups(bench_group *g, const bench_precision *p, const taker *to, bool quick)
+{
+    for (size_t i = 0; i < COUNT_OF(integrators); i++)
+        for (size_t c = 0; c < COUNT_OF(counts) - 1 && (!quick || counts[c] <= QUICK_MOST); c += c == 0 ? 2 : 1)
+            compensated_group(fresh(g), p, FREE, integrators[i], counts[c]), give(g, to);
+    compensated_group(fresh(g), p, CLOTH, EULER, 64 * 64), give(g, to);
+}
+
 static void small_groups(bench_group *g, const bench_precision *p, const taker *to)
 {
     static const size_t small[] = {0, 1, 10, 100};
@@ -232,9 +270,11 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         small_groups(&g, p, &to);
         if (quick)
             continue;
+        rest_group(fresh(&g), p, counts[COUNT_OF(counts) - 2]), give(&g, &to);
         machine_group(fresh(&g), p, counts[COUNT_OF(counts) - 1]), give(&g, &to);
         pairs_group(fresh(&g), p, 10000, false), give(&g, &to);
     }
+    compensated_groups(&g, &bench_float, &to, quick);
     bench_rollback_group(fresh(&g), integrators[1], 10000), give(&g, &to);
     if (quick)
         return;

@@ -11,6 +11,8 @@
 
 typedef enum bench_kind {
     FREE,    /* gravity and linear drag */
+    SLOWING, /* linear drag alone */
+    HUNG,    /* every particle on a damped spring to the origin */
     FIELD,   /* gravity, quadratic drag and an attractor */
     CLOTH,   /* a square cloth of structural, shear and bend springs, with gravity */
     GRAPH,   /* 4 springs a particle between random ends */
@@ -23,6 +25,8 @@ typedef enum bench_kind {
 typedef enum bench_form {
     LIBRARY,
     LIBRARY_SHUFFLED, /* springs in random order */
+    LIBRARY_AT_REST,  /* slowed by drag until velocities are as small as reals get */
+    LIBRARY_COMPENSATED,
     LIBRARY_THREADS,  /* on two threads */
     REFERENCE,        /* the loop of the integrator; of springs, runs; of pairs, tiles */
     EDGES,            /* a gather and a scatter a spring */
