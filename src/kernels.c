@@ -21,6 +21,17 @@ static void accelerate(const stf_flight *flight, size_t blocks, const stf_real *
         }
 }
 
+static bool exceeds(const stf_real *x, size_t length, stf_real most)
+{
+    const stf_magnitude bound = stf_magnitude_of(most);
+    const size_t n = length / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
+    stf_magnitude over = 0;
+
+    for (size_t i = 0; i < n; i++)
+        over |= stf_magnitude_of(x[i]) > bound;
+    return over != 0;
+}
+
 #ifndef STF_VARIANT
 #define NAME stf_kernels_baseline
 #define TEXT "baseline"
@@ -38,4 +49,5 @@ static const stf_force *const forces[] = {
     &stf_force_springs,     &stf_force_all_pairs_gravity, NULL,
 };
 
-const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate};
+const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate,
+                          .exceeds = exceeds};

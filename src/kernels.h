@@ -25,6 +25,9 @@ typedef struct stf_kernels {
     /* a = gravity - (drag / m) v + F / m, 0 for the immovable, of so many blocks. `a` holds F and gets a. */
     void (*accelerate)(const stf_flight *flight, size_t blocks, const stf_real *inverse_mass, const stf_real *velocity,
                        stf_real *a);
+
+    /* Whether the magnitude of any x[i] is over `most` or a NaN's; raises no floating-point flag. `length`: whole rows. */
+    bool (*exceeds)(const stf_real *x, size_t length, stf_real most);
 } stf_kernels;
 
 extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;

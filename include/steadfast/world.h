@@ -17,6 +17,20 @@ extern "C" {
 
 typedef struct stf_world stf_world;
 
+/* What watches over the state: see stf_world_fault. All zero: nothing does. */
+typedef enum stf_guard_mode {
+    STF_GUARD_OFF,
+    STF_GUARD_REPORT, /* says so, and changes no bit */
+    STF_GUARD_FREEZE  /* takes the world back to the last tick that was good, and lets it go no further */
+} stf_guard_mode;
+
+typedef struct stf_guard {
+    stf_guard_mode mode;
+    unsigned interval;     /* ticks from a look at every particle to the next; 0: 64 */
+    double position_bound; /* m, for the magnitude of each component; 0: all that is finite */
+    double velocity_bound; /* m/s, likewise */
+} stf_guard;
+
 /* What to create. All zero is a valid def: `stf_world_def def = {0};`, then set what you need. */
 typedef struct stf_world_def {
     unsigned dimensions;              /* 1, 2 or 3; 0: 3 */
@@ -27,12 +41,13 @@ typedef struct stf_world_def {
     size_t capacity;                  /* particles to make room for; a world grows when it must, but never in a step */
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
     bool keep_radius;                 /* keep radii; costs a real a particle */
+    stf_guard guard;                  /* all zero: none; else costs up to 3% and a copy of the state */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
 /* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator; half an
-   allocator; tasks without run). */
+   allocator; tasks without run), PARAMETERS (guard). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
@@ -128,7 +143,8 @@ STF_API stf_vector stf_world_gravity(const stf_world *world);
 
 /*
  * Runs `ticks` ticks: each is `substeps` steps of the integrator of step / substeps seconds. Allocates nothing and calls no
- * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite.
+ * libm function but sqrt (with a guard, on some machines, those of <fenv.h>). Errors: DIVERGED, which only a guard finds; without
+ * one, particles that end up non-finite are not looked for.
  * Many ticks in one call cost less than many calls where no link force is: each block stays in cache for all of them.
  */
 STF_API stf_result stf_world_step(stf_world *world, unsigned ticks);
@@ -149,6 +165,65 @@ STF_API unsigned stf_world_substeps(const stf_world *world);
 /* Errors: NULL, DESCRIPTOR, MEMORY. Cost: a copy of the world if this integrator needs more arrays than any before. */
 STF_API stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator);
 STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
+
+/* ---- divergence -------------------------------------------------------------------------------------------------------- */
+
+/*
+ * With a guard (stf_world_def.guard) stf_world_step tells which particle left the finite, or your bounds, and after which tick:
+ *
+ *     if (stf_world_step(world, ticks) == STF_ERROR_DIVERGED && stf_world_fault(world, &fault)) {
+ *         log_line("particle %zu diverged at tick %" PRIu64, fault.particle, fault.tick);
+ *         stf_world_remove(world, fault.particle, NULL);     // or set it to rest, or shorten the step
+ *         stf_world_clear_fault(world);                      // the next step goes on from there
+ *     }
+ *
+ * STF_GUARD_REPORT: the world has gone through all ticks, with the bits that it has without a guard. The step that finds the
+ * fault returns the error, once; until you clear it the guard rests. STF_GUARD_FREEZE: the world is what it was after the last
+ * good tick, fault.tick - 1, and stf_world_ticks and stf_world_time say so. Until you clear the fault, steps change nothing and
+ * return the error. Previous positions are the positions, so that a frozen world stands still whatever alpha is. All other
+ * functions work as ever.
+ *
+ * When: a number that overflows, or a 0/0, is found in the step that made it, as the processor marks it. What no arithmetic of
+ * the step made (a NaN that your force read somewhere) and your bounds are found at a look at every particle, at each tick that
+ * `interval` divides: a frozen world has then gone back by less than `interval` ticks. A particle that leaves a bound and is back
+ * before the look goes unseen. With interval 1 everything is found at once, at the cost of a look a tick.
+ *
+ * The tick is exact: from the last look the ticks are run again one by one, with the calls of your own forces and integrators.
+ * Those have to be functions of what they are given; if they are not, the tick is that at which the fault was seen, at most. A
+ * state that was bad to begin with (a particle set outside of a bound) has the tick from which the step started.
+ *
+ * Cost: at most 3% from some 1,000 particles on, some 10 ns a step below, in worlds that nothing changes between steps. A look
+ * checks and copies position, velocity and history; the first step after a change of whatever kind makes one as well, about as
+ * much as a step of an Euler method in flight. Memory: that copy, 24 bytes a particle in float, 3D, and the history. A fault
+ * costs up to twice `interval` ticks. The floating-point flags of your threads are left as the step alone would leave them.
+ * Where the processor keeps no such flags `interval` is 1.
+ */
+typedef enum stf_fault_kind {
+    STF_FAULT_NONE,
+    STF_FAULT_VELOCITY_NOT_FINITE, /* of several at once, the first of these */
+    STF_FAULT_POSITION_NOT_FINITE,
+    STF_FAULT_VELOCITY_BOUND,
+    STF_FAULT_POSITION_BOUND
+} stf_fault_kind;
+
+typedef struct stf_fault {
+    size_t particle; /* the lowest that was bad after this tick */
+    uint64_t tick;   /* the first after which any was: what stf_world_ticks was then */
+    stf_fault_kind kind;
+} stf_fault;
+
+/* Whether the guard has found a fault that was not cleared; *fault (unless NULL) gets it. */
+STF_API bool stf_world_fault(const stf_world *world, stf_fault *fault);
+
+/* The guard watches again, from this state on. */
+STF_API stf_result stf_world_clear_fault(stf_world *world);
+
+/* Also clears the fault. Errors: PARAMETERS (no such mode; a bound that is negative or not finite), MEMORY. Cost: a copy of the
+   world where it had no guard before. */
+STF_API stf_result stf_world_set_guard(stf_world *world, stf_guard guard);
+
+/* With the interval that is kept. */
+STF_API stf_guard stf_world_guard(const stf_world *world);
 
 /* ---- what can be asked ------------------------------------------------------------------------------------------------- */
 

@@ -169,6 +169,7 @@ stf_world *bench_world_create(const bench_scene *scene, stf_allocator allocator)
     const stf_world_def def = {.integrator = stf_integrator_find(scene->integrator),
                                .step = (double)law.dt,
                                .gravity = {law.gravity[0], law.gravity[1], law.gravity[2]},
+                               .guard.mode = scene->form == LIBRARY_GUARDED ? STF_GUARD_FREEZE : STF_GUARD_OFF,
                                .allocator = allocator,
                                .parallel = scene->form == LIBRARY_THREADS ? bench_threads() : (stf_parallel){0}};
     stf_world *world = NULL;
