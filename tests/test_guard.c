@@ -16,31 +16,51 @@
 #define TICKS 90      /* all that is stiff here has overflowed by then, in double too */
 #define STEP (1.0 / 64)
 
-/* A force that goes off at a time: from then on pushes one particle along x. */
+/* A force that goes off at a time: from then on pushes one particle along x with push / divisor. */
 typedef struct bomb {
     double from; /* s */
     uint64_t particle;
     stf_real push; /* N */
+    stf_real divisor;
 } bomb;
 
 static void explode(const void *records, size_t record_count, const stf_particles *particles, double time)
 {
     const bomb *b = records;
 
-    for (size_t r = 0; r < record_count; r++)
-        if (time >= b[r].from && b[r].particle - particles->first < particles->count)
-            particles->force[stf_particles_offset(particles, (size_t)b[r].particle - particles->first)] += b[r].push;
+    for (size_t r = 0; r < record_count; r++) {
+        const size_t i = (size_t)b[r].particle - particles->first;
+
+        if (time >= b[r].from && i < particles->count)
+            particles->force[stf_particles_offset(particles, i)] += b[r].push / b[r].divisor;
+    }
 }
 
 static const stf_force bomb_force = {.name = "bomb", .apply = explode, .depends_on = STF_ON_TIME,
-                                     .record_size = sizeof(bomb), .fields = "88r"};
+                                     .record_size = sizeof(bomb), .fields = "88rr"};
+
+/* v(n+1) = v(n) + a(n-1) dt: what overflows in one tick reaches the state in the next, and raises no flag then. */
+static void late_step(stf_system *system, stf_real dt)
+{
+    stf_real *x = system->position, *v = system->velocity, *a = system->work[0], *before = system->history[0];
+
+    system->accelerate(system, system->time, x, v, a);
+    for (size_t i = 0; i < system->length; i++) {
+        v[i] += (before[i] == before[i] ? before[i] : a[i]) * dt;
+        x[i] += v[i] * dt;
+        before[i] = a[i];
+    }
+}
+
+static const stf_integrator late = {.name = "late", .step = late_step, .work_arrays = 1, .history_arrays = 1};
 
 typedef struct scenario {
     const char *name;
     stf_real drag;      /* kg/s */
     stf_real stiffness; /* N/m, of a chain of springs; 0: none */
     bool is_tied, is_seen_at_once;
-    stf_real push; /* of a bomb in the middle of the run; 0: none */
+    bool explodes; /* in the middle of the run: push / divisor, N */
+    stf_real push, divisor;
     double position_bound, velocity_bound;
 } scenario;
 
@@ -48,13 +68,16 @@ typedef struct scenario {
 static const scenario scenarios[] = {
     {.name = "drag in flight", .drag = 1000000, .is_seen_at_once = true},
     {.name = "springs", .stiffness = (stf_real)1e10, .is_tied = true, .is_seen_at_once = true},
-    {.name = "a field overflows", .push = REAL_MAX, .is_seen_at_once = true},
-    {.name = "a field overflows among links", .push = REAL_MAX, .is_tied = true, .is_seen_at_once = true},
-    {.name = "a field gives a NaN", .push = NAN},
-    {.name = "a field gives an infinity among links", .push = INFINITY, .is_tied = true},
-    {.name = "too far", .push = 10000, .position_bound = 100},
-    {.name = "too far among links", .push = 10000, .is_tied = true, .position_bound = 100},
-    {.name = "too fast", .push = 10000, .velocity_bound = 1000},
+    {.name = "a field overflows", .explodes = true, .push = REAL_MAX, .divisor = 1, .is_seen_at_once = true},
+    {.name = "a field overflows among links", .explodes = true, .push = REAL_MAX, .divisor = 1, .is_tied = true,
+     .is_seen_at_once = true},
+    {.name = "a field divides by 0", .explodes = true, .push = 1, .divisor = 0, .is_seen_at_once = true},
+    {.name = "a field divides 0 by 0", .explodes = true, .push = 0, .divisor = 0, .is_seen_at_once = true},
+    {.name = "a field gives a NaN", .explodes = true, .push = NAN, .divisor = 1},
+    {.name = "a field gives an infinity among links", .explodes = true, .push = INFINITY, .divisor = 1, .is_tied = true},
+    {.name = "too far", .explodes = true, .push = 10000, .divisor = 1, .position_bound = 100},
+    {.name = "too far among links", .explodes = true, .push = 10000, .divisor = 1, .is_tied = true, .position_bound = 100},
+    {.name = "too fast", .explodes = true, .push = 10000, .divisor = 1, .velocity_bound = 1000},
 };
 
 static stf_world *world_of(const scenario *s, const stf_integrator *integrator, stf_guard guard, stf_world_def def)
@@ -72,8 +95,9 @@ static stf_world *world_of(const scenario *s, const stf_integrator *integrator, 
                                                        .inverse_mass = i % 10 ? (stf_real)1 + x : 0}, NULL));
     }
     add_force(world, &stf_force_linear_drag, &(stf_linear_drag){s->drag});
-    if (s->push != 0)
-        add_force(world, &bomb_force, &(bomb){.from = TICKS / 3 * STEP, .particle = 431, .push = s->push});
+    if (s->explodes)
+        add_force(world, &bomb_force,
+                  &(bomb){.from = TICKS / 3 * STEP, .particle = 431, .push = s->push, .divisor = s->divisor});
     if (s->is_tied)
         add_force(world, &idle_link, NULL);
     for (uint32_t i = 0; s->stiffness > 0 && i < 8; i++)
@@ -285,6 +309,15 @@ static void a_report_names_particle_and_tick_and_changes_no_bit(void **state)
     for_all(check_report);
 }
 
+static void what_overflows_before_it_reaches_the_state_is_found_when_it_does(void **state)
+{
+    (void)state;
+    for (size_t p = 0; p < COUNT_OF(patterns) - 1; p++) {
+        check_freeze(&scenarios[2], &late, 0, patterns[p], parallels[0], 1);
+        check_report(&scenarios[3], &late, 50, patterns[p], parallels[1], 1);
+    }
+}
+
 static void a_frozen_world_stands_still_for_every_alpha(void **state)
 {
     (void)state;
@@ -317,7 +350,7 @@ static void worlds_that_change_at_every_tick_are_watched(void **state)
                 assert_true(saved_is(s, world));
                 saved_free(&s);
             }
-            add_force(world, &bomb_force, &(bomb){.from = 0, .particle = 1, .push = REAL_MAX});
+            add_force(world, &bomb_force, &(bomb){.from = 0, .particle = 1, .push = REAL_MAX, .divisor = 1});
             assert_refused(stf_world_step(world, 3), STF_ERROR_DIVERGED);
             stf_fault fault;
             assert_true(stf_world_fault(world, &fault));
@@ -372,6 +405,24 @@ static void a_particle_that_is_set_out_of_bounds_is_found_before_it_moves(void *
     }
 }
 
+/* Whenever the world was changed. Where that was since the last look there is nothing to run again: the look's tick is told. */
+static void looks_are_at_ticks_that_the_interval_divides(void **state)
+{
+    (void)state;
+    for (unsigned change = 0; change < 8; change++) {
+        stf_world *world = make_world((stf_world_def){.guard = {STF_GUARD_REPORT, 8, 10, 0}, .step = 1});
+
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
+        for (unsigned tick = 0; tick < 15; tick++) {
+            assert_ok(stf_world_set_gravity(world, (stf_vector){0, tick == change ? 1 : 0, 0}));
+            assert_ok(stf_world_step(world, 1));
+        }
+        assert_refused(stf_world_step(world, 1), STF_ERROR_DIVERGED);
+        assert_fault(world, (stf_fault){.tick = change + 1 < 8 ? 11 : 16, .kind = STF_FAULT_POSITION_BOUND});
+        stf_world_destroy(world);
+    }
+}
+
 #define WATCHED_FLAGS (FE_OVERFLOW | FE_INVALID | FE_DIVBYZERO)
 
 /* Flags that were raised before stay, and what the step alone raises is raised: as without a guard. */
@@ -392,7 +443,7 @@ static void flags_of_the_engine_are_as_without_a_guard(void **state)
                 feraiseexcept(flags[f]);
                 stf_world_step(worlds[mode], TICKS / 4);
                 after[mode] = fetestexcept(WATCHED_FLAGS);
-                if (mode != STF_GUARD_OFF && s->push != 0)
+                if (mode != STF_GUARD_OFF && s->explodes)
                     assert_int_equal(after[mode], flags[f]);
                 stf_world_step(worlds[mode], TICKS);
                 after[mode] = fetestexcept(WATCHED_FLAGS);
@@ -448,7 +499,7 @@ static void no_step_allocates_and_a_guard_without_memory_is_refused(void **state
 static void a_world_that_moves_in_memory_freezes_where_it_would(void **state)
 {
     (void)state;
-    const scenario *s = &scenarios[4];
+    const scenario *s = &scenarios[6];
     const stf_fault expected = first_fault(s, &stf_velocity_verlet, 1);
     stf_world *world = world_of(s, &stf_velocity_verlet, guard_of(s, STF_GUARD_FREEZE, 64), (stf_world_def){0});
     stf_world *shadow = world_of(s, &stf_velocity_verlet, (stf_guard){.mode = STF_GUARD_OFF}, (stf_world_def){0});
@@ -491,6 +542,33 @@ static void loading_and_restoring_keep_the_guard_and_clear_the_fault(void **stat
     saved_free(&start);
     free(memory);
     stf_world_destroy(world);
+}
+
+/* Its checkpoint is the other world's. */
+static void a_snapshot_of_another_world_freezes_as_that_one_would(void **state)
+{
+    (void)state;
+    const scenario *s = &scenarios[2];
+    const stf_fault expected = first_fault(s, &stf_velocity_verlet, 1);
+    stf_world *worlds[2];
+
+    for (int n = 0; n < 2; n++)
+        worlds[n] = world_of(s, &stf_velocity_verlet, guard_of(s, STF_GUARD_FREEZE, 0), (stf_world_def){0});
+    assert_ok(stf_world_step(worlds[0], 5));
+    const size_t size = stf_world_snapshot_size(worlds[0]);
+    void *memory = malloc(size);
+    assert_ok(stf_world_snapshot(worlds[0], memory, size));
+    assert_ok(stf_world_restore(worlds[1], memory, size));
+    for (int n = 0; n < 2; n++) {
+        assert_refused(stf_world_step(worlds[n], TICKS), STF_ERROR_DIVERGED);
+        assert_fault(worlds[n], expected);
+    }
+    saved good = save_of(worlds[0]);
+    assert_true(saved_is(good, worlds[1]));
+    saved_free(&good);
+    free(memory);
+    stf_world_destroy(worlds[0]);
+    stf_world_destroy(worlds[1]);
 }
 
 static void bad_guards_are_refused_and_change_nothing(void **state)
@@ -538,14 +616,17 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_world_freezes_at_the_last_good_tick_and_goes_on),
         cmocka_unit_test(a_report_names_particle_and_tick_and_changes_no_bit),
+        cmocka_unit_test(what_overflows_before_it_reaches_the_state_is_found_when_it_does),
         cmocka_unit_test(a_frozen_world_stands_still_for_every_alpha),
         cmocka_unit_test(worlds_that_change_at_every_tick_are_watched),
         cmocka_unit_test(a_report_of_a_world_that_always_changes_has_its_tick),
         cmocka_unit_test(a_particle_that_is_set_out_of_bounds_is_found_before_it_moves),
+        cmocka_unit_test(looks_are_at_ticks_that_the_interval_divides),
         cmocka_unit_test(flags_of_the_engine_are_as_without_a_guard),
         cmocka_unit_test(no_step_allocates_and_a_guard_without_memory_is_refused),
         cmocka_unit_test(a_world_that_moves_in_memory_freezes_where_it_would),
         cmocka_unit_test(loading_and_restoring_keep_the_guard_and_clear_the_fault),
+        cmocka_unit_test(a_snapshot_of_another_world_freezes_as_that_one_would),
         cmocka_unit_test(bad_guards_are_refused_and_change_nothing),
         cmocka_unit_test(describe_tells_of_the_guard),
     };

@@ -76,10 +76,10 @@ STF_API const char *stf_result_text(stf_result result);
 STF_API const char *stf_version(void);
 
 /*
- * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
- * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
- * destroy, reserve, load, and functions that add particles or add, set or remove a force or set an integrator or a guard:
- * never in a step. stf_world_restore may release, and never allocates.
+ * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL; `release`
+ * gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create, destroy,
+ * reserve, load, and functions that add particles or add, set or remove a force or set an integrator or a guard: never in a
+ * step. stf_world_restore may release, and never allocates.
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);
@@ -91,8 +91,8 @@ typedef struct stf_allocator {
  * The engine's threads. `run` calls task(context, index) once for every index below `tasks`, on any threads and in any order,
  * and returns when all are done. All zero: the caller's thread does all. The bits never depend on it, as long as all threads
  * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
- * force acts; else for each acceleration, each round of a link in it, and each loop of the integrator; and for the looks of a guard. A task wants some
- * 16 KiB of stack.
+ * force acts; else for each acceleration, each round of a link in it, and each loop of the integrator; and for the looks of a
+ * guard. A task wants some 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);

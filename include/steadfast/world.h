@@ -26,7 +26,7 @@ typedef enum stf_guard_mode {
 
 typedef struct stf_guard {
     stf_guard_mode mode;
-    unsigned interval;     /* ticks from a look at every particle to the next; 0: 64 */
+    unsigned interval;     /* ticks from a look at every particle to the next; 0: 16 where a link force acts, else 256 */
     double position_bound; /* m, for the magnitude of each component; 0: all that is finite */
     double velocity_bound; /* m/s, likewise */
 } stf_guard;
@@ -143,9 +143,9 @@ STF_API stf_vector stf_world_gravity(const stf_world *world);
 
 /*
  * Runs `ticks` ticks: each is `substeps` steps of the integrator of step / substeps seconds. Allocates nothing and calls no
- * libm function but sqrt (with a guard, on some machines, those of <fenv.h>). Errors: DIVERGED, which only a guard finds; without
- * one, particles that end up non-finite are not looked for.
- * Many ticks in one call cost less than many calls where no link force is: each block stays in cache for all of them.
+ * libm function but sqrt (with a guard, on some machines, those of <fenv.h>). Errors: DIVERGED, which only a guard finds;
+ * without one, particles that end up non-finite are not looked for. Many ticks in one call cost less than many calls where no
+ * link force is: each block stays in cache for all of them.
  */
 STF_API stf_result stf_world_step(stf_world *world, unsigned ticks);
 
@@ -172,31 +172,33 @@ STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
  * With a guard (stf_world_def.guard) stf_world_step tells which particle left the finite, or your bounds, and after which tick:
  *
  *     if (stf_world_step(world, ticks) == STF_ERROR_DIVERGED && stf_world_fault(world, &fault)) {
- *         log_line("particle %zu diverged at tick %" PRIu64, fault.particle, fault.tick);
+ *         ...log fault.particle, fault.tick
  *         stf_world_remove(world, fault.particle, NULL);     // or set it to rest, or shorten the step
  *         stf_world_clear_fault(world);                      // the next step goes on from there
  *     }
  *
  * STF_GUARD_REPORT: the world has gone through all ticks, with the bits that it has without a guard. The step that finds the
  * fault returns the error, once; until you clear it the guard rests. STF_GUARD_FREEZE: the world is what it was after the last
- * good tick, fault.tick - 1, and stf_world_ticks and stf_world_time say so. Until you clear the fault, steps change nothing and
- * return the error. Previous positions are the positions, so that a frozen world stands still whatever alpha is. All other
+ * good tick, fault.tick - 1, and stf_world_ticks and stf_world_time say so. Until you clear the fault, steps change nothing
+ * and return the error. Previous positions are the positions, so that a frozen world stands still whatever alpha is. All other
  * functions work as ever.
  *
- * When: a number that overflows, or a 0/0, is found in the step that made it, as the processor marks it. What no arithmetic of
- * the step made (a NaN that your force read somewhere) and your bounds are found at a look at every particle, at each tick that
- * `interval` divides: a frozen world has then gone back by less than `interval` ticks. A particle that leaves a bound and is back
- * before the look goes unseen. With interval 1 everything is found at once, at the cost of a look a tick.
+ * When: a number that overflows, or a 0 / 0, is found in the step that made it, as the processor marks it. What no arithmetic
+ * of the step made (a NaN that your force read somewhere) and your bounds are found at a look at every particle, at each tick
+ * that the interval divides: a frozen world has then gone back by less than an interval, though never behind your last change
+ * of it. A particle that leaves a bound and is back before the look goes unseen. With interval 1 all is found at once, at the
+ * cost of a look a tick. Where the processor keeps no flags the interval is 1.
  *
  * The tick is exact: from the last look the ticks are run again one by one, with the calls of your own forces and integrators.
- * Those have to be functions of what they are given; if they are not, the tick is that at which the fault was seen, at most. A
- * state that was bad to begin with (a particle set outside of a bound) has the tick from which the step started.
+ * Those have to be functions of what they are given; if they are not, the tick is at most that at which the fault was seen. So
+ * it is for what a look finds in a world that only reports and was changed since the look before. A state that was bad to
+ * begin with (a particle set outside of a bound) has the tick from which the step started.
  *
- * Cost: at most 3% from some 1,000 particles on, some 10 ns a step below, in worlds that nothing changes between steps. A look
- * checks and copies position, velocity and history; the first step after a change of whatever kind makes one as well, about as
- * much as a step of an Euler method in flight. Memory: that copy, 24 bytes a particle in float, 3D, and the history. A fault
- * costs up to twice `interval` ticks. The floating-point flags of your threads are left as the step alone would leave them.
- * Where the processor keeps no such flags `interval` is 1.
+ * Cost: some 10 ns a step, and at most 3%: tests/README.md has the table. A look checks and copies position, velocity
+ * and history, which takes as long as two steps of an Euler method in flight. A world that may freeze and is changed before a
+ * step has one made each time, since it never goes back behind a change; one that reports has not. Memory: that copy, 24 bytes
+ * a particle in float, 3D, and the history. A fault costs up to twice as many ticks as there were since the last look. The
+ * floating-point flags of your threads are left as the step alone would leave them.
  */
 typedef enum stf_fault_kind {
     STF_FAULT_NONE,
@@ -222,7 +224,7 @@ STF_API stf_result stf_world_clear_fault(stf_world *world);
    world where it had no guard before. */
 STF_API stf_result stf_world_set_guard(stf_world *world, stf_guard guard);
 
-/* With the interval that is kept. */
+/* As it was given; its interval may have become 1. */
 STF_API stf_guard stf_world_guard(const stf_world *world);
 
 /* ---- what can be asked ------------------------------------------------------------------------------------------------- */

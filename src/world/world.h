@@ -99,6 +99,7 @@ struct stf_world {
     stf_guard guard;
     stf_fault fault;
     stf_checkpoint checkpoint;
+    bool clears_flags; /* flags were raised once: from then on they are cleared before each step */
     bool *raised; /* in a step that is watched: gets whether a part of it raised a flag (flags.h); else NULL */
 
     stf_added_force *forces;
