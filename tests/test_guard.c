@@ -73,8 +73,8 @@ static const scenario scenarios[] = {
      .is_seen_at_once = true},
     {.name = "a field divides by 0", .explodes = true, .push = 1, .divisor = 0, .is_seen_at_once = true},
     {.name = "a field divides 0 by 0", .explodes = true, .push = 0, .divisor = 0, .is_seen_at_once = true},
-    {.name = "a field gives a NaN", .explodes = true, .push = NAN, .divisor = 1},
-    {.name = "a field gives an infinity among links", .explodes = true, .push = INFINITY, .divisor = 1, .is_tied = true},
+    {.name = "a field gives a NaN", .explodes = true, .push = (stf_real)NAN, .divisor = 1},
+    {.name = "a field gives an infinity among links", .explodes = true, .push = (stf_real)INFINITY, .divisor = 1, .is_tied = true},
     {.name = "too far", .explodes = true, .push = 10000, .divisor = 1, .position_bound = 100},
     {.name = "too far among links", .explodes = true, .push = 10000, .divisor = 1, .is_tied = true, .position_bound = 100},
     {.name = "too fast", .explodes = true, .push = 10000, .divisor = 1, .velocity_bound = 1000},
@@ -175,6 +175,16 @@ static void assert_same_state(const stf_world *a, const stf_world *b)
 static const unsigned patterns[][4] = {{1, 1, 1, 1}, {3, 1, 0, 5}, {TICKS, TICKS, TICKS, TICKS}};
 static const unsigned intervals[] = {0, 1, 7};
 
+/* Not under valgrind, say: the guard then looks at every tick. */
+static bool raises_flags(void)
+{
+    volatile stf_real large = REAL_MAX;
+
+    feclearexcept(FE_OVERFLOW);
+    large *= 2;
+    return large > REAL_MAX && fetestexcept(FE_OVERFLOW);
+}
+
 /*
  * An engine's threads, as far as flags go, on this one: parts in reverse order, each with flags of its own, of which some are
  * raised when it starts and have to be when it ends, and none of which the caller sees.
@@ -190,7 +200,7 @@ static void run_elsewhere(void *user, unsigned tasks, void (*task)(void *context
         if (part % 2)
             feraiseexcept(FE_INVALID);
         task(context, part);
-        assert_true(part % 2 == 0 || fetestexcept(FE_INVALID));
+        assert_true(part % 2 == 0 || fetestexcept(FE_INVALID) || !raises_flags());
     }
     fesetenv(&here);
 }
@@ -390,7 +400,7 @@ static void a_particle_that_is_set_out_of_bounds_is_found_before_it_moves(void *
         stf_world *world = make_world((stf_world_def){.guard = {(stf_guard_mode)mode, 0, 10, 0}});
 
         assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
-        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {600, 0, 0}, .inverse_mass = 1}, NULL));
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {60, 0, 0}, .inverse_mass = 1}, NULL));
         assert_ok(stf_world_step(world, 1));
         assert_ok(stf_world_set(world, 1, &(stf_particle){.position = {0, -11, 0}}));
         assert_refused(stf_world_step(world, 3), STF_ERROR_DIVERGED);
@@ -413,12 +423,11 @@ static void looks_are_at_ticks_that_the_interval_divides(void **state)
         stf_world *world = make_world((stf_world_def){.guard = {STF_GUARD_REPORT, 8, 10, 0}, .step = 1});
 
         assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 0, 0}, .inverse_mass = 1}, NULL));
-        for (unsigned tick = 0; tick < 15; tick++) {
+        for (unsigned tick = 0, last = raises_flags() ? 16 : 11; tick < last; tick++) {
             assert_ok(stf_world_set_gravity(world, (stf_vector){0, tick == change ? 1 : 0, 0}));
-            assert_ok(stf_world_step(world, 1));
+            assert_refused(stf_world_step(world, 1), tick + 1 < last ? STF_OK : STF_ERROR_DIVERGED);
         }
-        assert_refused(stf_world_step(world, 1), STF_ERROR_DIVERGED);
-        assert_fault(world, (stf_fault){.tick = change + 1 < 8 ? 11 : 16, .kind = STF_FAULT_POSITION_BOUND});
+        assert_fault(world, (stf_fault){.tick = change + 1 < 8 || !raises_flags() ? 11 : 16, .kind = STF_FAULT_POSITION_BOUND});
         stf_world_destroy(world);
     }
 }
@@ -432,7 +441,7 @@ static void flags_of_the_engine_are_as_without_a_guard(void **state)
     static const int flags[] = {0, FE_OVERFLOW, FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW | FE_INVALID, WATCHED_FLAGS};
 
     for (size_t k = 0; k < COUNT_OF(scenarios); k++)
-        for (size_t f = 0; f < COUNT_OF(flags); f++) {
+        for (size_t f = 0; f < COUNT_OF(flags) && raises_flags(); f++) {
             const scenario *s = &scenarios[k];
             stf_world *worlds[3];
             int after[3];
@@ -574,8 +583,11 @@ static void a_snapshot_of_another_world_freezes_as_that_one_would(void **state)
 static void bad_guards_are_refused_and_change_nothing(void **state)
 {
     (void)state;
-    static const stf_guard bad[] = {{STF_GUARD_FREEZE, 0, -1, 0}, {STF_GUARD_FREEZE, 0, 0, -1}, {STF_GUARD_REPORT, 0, NAN, 0},
-                                    {STF_GUARD_REPORT, 0, 0, INFINITY}, {(stf_guard_mode)3, 0, 0, 0}};
+    static const stf_guard bad[] = {{STF_GUARD_FREEZE, 0, -1, 0},
+                                    {STF_GUARD_FREEZE, 0, 0, -1},
+                                    {STF_GUARD_REPORT, 0, (double)NAN, 0},
+                                    {STF_GUARD_REPORT, 0, 0, (double)INFINITY},
+                                    {(stf_guard_mode)3, 0, 0, 0}};
     stf_world *world = make_world((stf_world_def){.guard = {STF_GUARD_REPORT, 9, 1, 2}}), *none = NULL;
 
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
