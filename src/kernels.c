@@ -52,6 +52,17 @@ static void settle(const stf_flight *flight)
     settle_state(n, flight->velocity);
 }
 
+static bool exceeds(const stf_real *x, size_t length, stf_real most)
+{
+    const stf_magnitude bound = stf_magnitude_of(most);
+    const size_t n = length / STF_ROW_MULTIPLE * STF_ROW_MULTIPLE;
+    stf_magnitude over = 0;
+
+    for (size_t i = 0; i < n; i++)
+        over |= stf_magnitude_of(x[i]) > bound;
+    return over != 0;
+}
+
 #ifndef STF_VARIANT
 #define NAME stf_kernels_baseline
 #define TEXT "baseline"
@@ -70,4 +81,4 @@ static const stf_force *const forces[] = {
 };
 
 const stf_kernels NAME = {.name = TEXT, .integrators = stf_integrators, .forces = forces, .accelerate = accelerate,
-                           .settle = settle};
+                           .settle = settle, .exceeds = exceeds};

@@ -28,6 +28,9 @@ typedef struct stf_kernels {
 
     /* What is smaller than STF_AT_REST becomes 0, whatever acts on these blocks. */
     void (*settle)(const stf_flight *flight);
+
+    /* Whether the magnitude of any x[i] is over `most` or a NaN's; raises no floating-point flag. `length`: whole rows. */
+    bool (*exceeds)(const stf_real *x, size_t length, stf_real most);
 } stf_kernels;
 
 extern const stf_kernels stf_kernels_baseline, stf_kernels_avx2, stf_kernels_avx512;

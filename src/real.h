@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "steadfast/base.h"
 #include "variant.h"
@@ -17,11 +18,15 @@
 #define STF_REAL_MIN DBL_MIN
 #define STF_REAL_MAX DBL_MAX
 #define STF_REAL_NAME "double"
+#define STF_MAGNITUDE_MAX INT64_MAX
+typedef int64_t stf_magnitude;
 static inline stf_real stf_sqrt(stf_real x) { return sqrt(x); }
 #else
 #define STF_REAL_MIN FLT_MIN
 #define STF_REAL_MAX FLT_MAX
 #define STF_REAL_NAME "float"
+#define STF_MAGNITUDE_MAX INT32_MAX
+typedef int32_t stf_magnitude;
 static inline stf_real stf_sqrt(stf_real x) { return sqrtf(x); }
 #endif
 
@@ -30,6 +35,16 @@ static inline stf_real stf_sqrt(stf_real x) { return sqrtf(x); }
  * for a rest; shorter runs of springs are not worth a vector, and sums over lanes are made in as many places.
  */
 #define STF_ROW_MULTIPLE ((size_t)16)
+
+/* |x| as an integer, in the order of magnitudes: finite, infinite, NaN (IEEE 754-2008, 5.10). A comparison of reals may raise a
+   floating-point flag; of these none does. */
+static inline stf_magnitude stf_magnitude_of(stf_real x)
+{
+    stf_magnitude bits;
+
+    memcpy(&bits, &x, sizeof bits);
+    return bits & STF_MAGNITUDE_MAX;
+}
 
 static inline bool stf_vector_is_finite(stf_vector v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 

@@ -27,6 +27,7 @@ static const char *const texts[STF_RESULT_COUNT] = {
     [STF_ERROR_ALTERED] = "the saved world has been altered",
     [STF_ERROR_MISMATCH] = "the world has not the dimensions, options, integrator or forces of the saved one",
     [STF_ERROR_SNAPSHOT] = "the memory holds no snapshot, or the world lacks forces or room that it had",
+    [STF_ERROR_DIVERGED] = "a particle is no longer finite or within the bounds of the guard: see stf_world_fault",
 };
 
 const char *stf_result_text(stf_result result)

@@ -36,7 +36,7 @@ typedef struct stf_vector {
     stf_real x, y, z;
 } stf_vector;
 
-/* What a function that can fail returns. Anything but STF_OK means that nothing has changed. */
+/* What a function that can fail returns. Anything but STF_OK means that nothing has changed, but for STF_ERROR_DIVERGED. */
 typedef enum stf_result {
     STF_OK = 0,
     STF_ERROR_NULL,       /* a pointer that has to point somewhere is NULL */
@@ -66,6 +66,7 @@ typedef enum stf_result {
     STF_ERROR_ALTERED,     /* a saved world whose checksum does not fit, or that contradicts itself */
     STF_ERROR_MISMATCH,    /* a world that was not made like the saved one: see stf_mismatch */
     STF_ERROR_SNAPSHOT,    /* no snapshot, or one of a world that had other forces or more room */
+    STF_ERROR_DIVERGED,    /* the guard found a state that is not finite or out of bounds: see stf_world_fault */
     STF_RESULT_COUNT
 } stf_result;
 
@@ -76,9 +77,9 @@ STF_API const char *stf_result_text(stf_result result);
 STF_API const char *stf_version(void);
 
 /*
- * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
- * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
- * destroy, reserve, load, and functions that add particles or add, set or remove a force or set an integrator: never in a
+ * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL; `release`
+ * gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create, destroy,
+ * reserve, load, and functions that add particles or add, set or remove a force or set an integrator or a guard: never in a
  * step. stf_world_restore may release, and never allocates.
  */
 typedef struct stf_allocator {
@@ -92,7 +93,7 @@ typedef struct stf_allocator {
  * and returns when all are done. All zero: the caller's thread does all. The bits never depend on it, as long as all threads
  * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
  * force acts; else for each acceleration, each round of a link in it, each loop of the integrator, and every
- * STF_SETTLE_TICKS ticks. A task wants some 16 KiB of stack.
+ * STF_SETTLE_TICKS ticks; and for the looks of a guard. A task wants some 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);

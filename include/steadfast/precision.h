@@ -90,6 +90,10 @@ typedef double stf_real;
 #define stf_world_view              stf_world_view_f64
 #define stf_world_accelerations     stf_world_accelerations_f64
 #define stf_world_find_non_finite   stf_world_find_non_finite_f64
+#define stf_world_set_guard         stf_world_set_guard_f64
+#define stf_world_guard             stf_world_guard_f64
+#define stf_world_fault             stf_world_fault_f64
+#define stf_world_clear_fault       stf_world_clear_fault_f64
 #define stf_world_describe          stf_world_describe_f64
 /* save */
 #define stf_world_save_size         stf_world_save_size_f64

@@ -16,7 +16,8 @@
  *
  * A world that is saved and loaded, or restored, steps on with the bits that it would have had: particles, previous positions,
  * radii, rests, the integrator's history, ticks, time, step, substeps, gravity, the records and ids of forces. Code can't be
- * saved: integrator and forces are matched with those of the world that is loaded into.
+ * saved: integrator and forces are matched with those of the world that is loaded into. A guard is that world's own, and starts
+ * afresh.
  */
 #ifndef STEADFAST_SAVE_H
 #define STEADFAST_SAVE_H

@@ -17,6 +17,20 @@ extern "C" {
 
 typedef struct stf_world stf_world;
 
+/* What watches over the state: see stf_world_fault. All zero: nothing does. */
+typedef enum stf_guard_mode {
+    STF_GUARD_OFF,
+    STF_GUARD_REPORT, /* says so, and changes no bit */
+    STF_GUARD_FREEZE  /* takes the world back to the last tick that was good, and lets it go no further */
+} stf_guard_mode;
+
+typedef struct stf_guard {
+    stf_guard_mode mode;
+    unsigned interval;     /* ticks from a look at every particle to the next; 0: 16 where a link force acts, else 256 */
+    double position_bound; /* m, for the magnitude of each component; 0: all that is finite */
+    double velocity_bound; /* m/s, likewise */
+} stf_guard;
+
 /* What to create. All zero is a valid def: `stf_world_def def = {0};`, then set what you need. */
 typedef struct stf_world_def {
     unsigned dimensions;              /* 1, 2 or 3; 0: 3 */
@@ -30,12 +44,13 @@ typedef struct stf_world_def {
     bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: in
                                          float for long runs and places far from the origin. What is read out is the rounded
                                          state. Costs two vectors a particle, and their way through memory */
+    stf_guard guard;                  /* all zero: none; else costs up to 3% and a copy of the state */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
 /* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator, also one
-   without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run). */
+   without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS (guard). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
@@ -131,9 +146,10 @@ STF_API stf_vector stf_world_gravity(const stf_world *world);
 
 /*
  * Runs `ticks` ticks: each is `substeps` steps of the integrator of step / substeps seconds. Allocates nothing and calls no
- * libm function but sqrt. Particles that end up non-finite are not looked for: see stf_world_find_non_finite. At every tick
- * whose number is a multiple of STF_SETTLE_TICKS, what is smaller than STF_AT_REST becomes 0 (see particle.h).
- * Many ticks in one call cost less than many calls where no link force is: each block stays in cache for all of them.
+ * libm function but sqrt (with a guard, on some machines, those of <fenv.h>). Errors: DIVERGED, which only a guard finds;
+ * without one, particles that end up non-finite are not looked for. At every tick whose number is a multiple of
+ * STF_SETTLE_TICKS, what is smaller than STF_AT_REST becomes 0 (see particle.h). Many ticks in one call cost less than many
+ * calls where no link force is: each block stays in cache for all of them.
  */
 STF_API stf_result stf_world_step(stf_world *world, unsigned ticks);
 
@@ -154,6 +170,68 @@ STF_API unsigned stf_world_substeps(const stf_world *world);
    any before. */
 STF_API stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *integrator);
 STF_API const stf_integrator *stf_world_integrator(const stf_world *world);
+
+/* ---- divergence -------------------------------------------------------------------------------------------------------- */
+
+/*
+ * With a guard (stf_world_def.guard) stf_world_step tells which particle left the finite, or your bounds, and after which tick:
+ *
+ *     if (stf_world_step(world, ticks) == STF_ERROR_DIVERGED && stf_world_fault(world, &fault)) {
+ *         ...log fault.particle, fault.tick
+ *         stf_world_remove(world, fault.particle, NULL);     // or set it to rest, or shorten the step
+ *         stf_world_clear_fault(world);                      // the next step goes on from there
+ *     }
+ *
+ * STF_GUARD_REPORT: the world has gone through all ticks, with the bits that it has without a guard. The step that finds the
+ * fault returns the error, once; until you clear it the guard rests. STF_GUARD_FREEZE: the world is what it was after the last
+ * good tick, fault.tick - 1, and stf_world_ticks and stf_world_time say so. Until you clear the fault, steps change nothing
+ * and return the error. Previous positions are the positions, so that a frozen world stands still whatever alpha is. All other
+ * functions work as ever.
+ *
+ * When: a number that overflows, or a 0 / 0, is found in the step that made it, as the processor marks it. What no arithmetic
+ * of the step made (a NaN that your force read somewhere) and your bounds are found at a look at every particle, at each tick
+ * that the interval divides: a frozen world has then gone back by less than an interval, though never behind your last change
+ * of it. A particle that leaves a bound and is back before the look goes unseen. With interval 1 all is found at once, at the
+ * cost of a look a tick. Where the processor keeps no flags the interval is 1.
+ *
+ * The tick is exact: from the last look the ticks are run again one by one, with the calls of your own forces and integrators.
+ * Those have to be functions of what they are given; if they are not, the tick is at most that at which the fault was seen. So
+ * it is for what a look finds in a world that only reports and was changed since the look before. A state that was bad to
+ * begin with (a particle set outside of a bound) has the tick from which the step started.
+ *
+ * Cost: some 10 ns a step, and from 10,000 particles on at most 3%. A look checks and copies position, velocity and history,
+ * which takes as long as two steps of an Euler method in flight. A world that may freeze and is changed before a step has one
+ * made each time, since it never goes back behind a change (an Euler method in flight then takes three times as long); one
+ * that reports has not. Memory: that copy, 24 bytes a particle in float, 3D, and the history. A fault costs up to twice as
+ * many ticks as there were since the last look. The floating-point flags of your threads are left as the step alone would
+ * leave them.
+ */
+typedef enum stf_fault_kind {
+    STF_FAULT_NONE,
+    STF_FAULT_VELOCITY_NOT_FINITE, /* of several at once, the first of these */
+    STF_FAULT_POSITION_NOT_FINITE,
+    STF_FAULT_VELOCITY_BOUND,
+    STF_FAULT_POSITION_BOUND
+} stf_fault_kind;
+
+typedef struct stf_fault {
+    size_t particle; /* the lowest that was bad after this tick */
+    uint64_t tick;   /* the first after which any was: what stf_world_ticks was then */
+    stf_fault_kind kind;
+} stf_fault;
+
+/* Whether the guard has found a fault that was not cleared; *fault (unless NULL) gets it. */
+STF_API bool stf_world_fault(const stf_world *world, stf_fault *fault);
+
+/* The guard watches again, from this state on. */
+STF_API stf_result stf_world_clear_fault(stf_world *world);
+
+/* Also clears the fault. Errors: PARAMETERS (no such mode; a bound that is negative or not finite), MEMORY. Cost: a copy of the
+   world where it had no guard before. */
+STF_API stf_result stf_world_set_guard(stf_world *world, stf_guard guard);
+
+/* As it was given; its interval may have become 1. */
+STF_API stf_guard stf_world_guard(const stf_world *world);
 
 /* ---- what can be asked ------------------------------------------------------------------------------------------------- */
 

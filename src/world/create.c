@@ -60,10 +60,12 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
     if (!given || !world)
         return STF_ERROR_NULL;
 
-    const stf_world_def def = with_defaults(given);
-    const stf_result bad = check_def(&def);
+    stf_world_def def = with_defaults(given);
+    stf_result bad = check_def(&def);
     stf_allocator allocator;
 
+    if (!bad)
+        bad = stf_guard_complete(&def.guard);
     if (bad)
         return bad;
     if (def.parallel.tasks > 1 && !def.parallel.run)
@@ -85,6 +87,7 @@ stf_result stf_world_create(const stf_world_def *given, stf_world **world)
         .keep_radius = def.keep_radius,
         .compensated = def.compensated,
         .step = def.step,
+        .guard = def.guard,
         .history_stale = true,
     };
     made->stepper = stf_kernels_integrator(made->kernels, def.integrator);

@@ -59,12 +59,32 @@ static void append_head(text *t, const stf_world *world)
         append(t, "block by block: every pass runs in cache, memory is read and written once a tick\n");
 }
 
+static void append_guard(text *t, const stf_world *world)
+{
+    const stf_guard *guard = &world->guard;
+    const bool freezes = guard->mode == STF_GUARD_FREEZE;
+
+    if (guard->mode == STF_GUARD_OFF)
+        return;
+    append(t, "guard: %s; a look at every particle each %u tick%s", freezes ? "freezes" : "reports", stf_guard_interval(world),
+           plural(stf_guard_interval(world)));
+    if (guard->position_bound > 0)
+        append(t, "; within %.6g m", guard->position_bound);
+    if (guard->velocity_bound > 0)
+        append(t, "; up to %.6g m/s", guard->velocity_bound);
+    if (world->fault.kind != STF_FAULT_NONE)
+        append(t, "; found particle %llu at tick %llu", (unsigned long long)world->fault.particle,
+               (unsigned long long)world->fault.tick);
+    append(t, "\n");
+}
+
 static void append_state(text *t, const stf_world *world)
 {
     const double vector = (double)(world->dimensions * sizeof(stf_real)), real = (double)sizeof(stf_real);
     const stf_integrator *integrator = world->integrator;
     const unsigned long long evaluations = in_flight(world) ? 1 : (unsigned long long)integrator->evaluations;
     const double work = world->storage.whole ? integrator->work_arrays * vector : 0;
+    stf_real *arrays[STF_CHANGING_MAX];
 
     append(t, "  %-32s %13s %16s\n", "", "passes a step", "bytes a particle");
     append_row(t, "position, velocity, inverse mass", 0, 2 * vector + real, "");
@@ -74,6 +94,8 @@ static void append_state(text *t, const stf_world *world)
         append_row(t, "radius", 0, real, "");
     if (world->compensated)
         append_row(t, "rests of position and velocity", 0, 2 * vector, "");
+    if (world->storage.guarded)
+        append_row(t, "checkpoint", 0, (double)stf_storage_changing(&world->storage, arrays) * vector, "two passes a look");
     append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
     append_row(t, "gravity, linear drag", 0, 0, "in flight part of the integrator's pass, else of F / m");
 }
@@ -104,6 +126,7 @@ size_t stf_world_describe(const stf_world *world, char *at, size_t size)
         return 0;
 
     append_head(&t, world);
+    append_guard(&t, world);
     append_state(&t, world);
     for (size_t i = 0; i < world->force_count; i++)
         append_force(&t, world, &world->forces[i]);

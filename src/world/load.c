@@ -200,6 +200,7 @@ static void put_head(stf_world *world, const saved *s)
     world->step_start_time = s->step_start_time;
     stf_world_put_gravity(world, s->gravity);
     world->last_force_id = s->last_force_id;
+    stf_guard_reset(world);
 }
 
 /* Of two lists of forces that differ in records, releases what only `from` has. */

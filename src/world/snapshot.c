@@ -156,10 +156,12 @@ static void restore_settings(stf_world *world, const stf_world *then)
     now.kernels = world->kernels;
     now.stepper = stf_kernels_integrator(world->kernels, then->integrator);
     now.storage = world->storage;
+    now.guard = world->guard;
     now.forces = world->forces;
     now.force_count = world->force_count;
     now.force_capacity = world->force_capacity;
     *world = now;
+    stf_guard_reset(world);
 }
 
 /* Blocks of another size are the only block, here and there. */

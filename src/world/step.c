@@ -128,11 +128,8 @@ static void step_tied(const plan *p)
     step_range(p, &range);
 }
 
-stf_result stf_world_step(stf_world *world, unsigned ticks)
+void stf_world_advance(stf_world *world, unsigned ticks)
 {
-    if (!world)
-        return STF_ERROR_NULL;
-
     plan p = {.world = world, .blocks = stf_world_blocks(world), .ticks = ticks};
 
     p.dt = (stf_real)(world->step / world->substeps);
@@ -145,5 +142,15 @@ stf_result stf_world_step(stf_world *world, unsigned ticks)
         stf_world_run(world, p.parts, step_blocks_part, &p);
     world->history_stale = world->history_stale && ticks == 0;
     world->ticks += ticks;
+}
+
+stf_result stf_world_step(stf_world *world, unsigned ticks)
+{
+    if (!world)
+        return STF_ERROR_NULL;
+    if (world->guard.mode != STF_GUARD_OFF)
+        return stf_guard_step(world, ticks);
+
+    stf_world_advance(world, ticks);
     return STF_OK;
 }

@@ -2,8 +2,9 @@
 
 #include "world.h"
 
-/* More rows than any lane has: 3 dimensions x (state, its rests, previous, history and work arrays), inverse mass, radius. */
-#define ARRAYS_BOUND (5 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX)
+/* More rows than any lane has: 3 dimensions x (state, its rests, previous, history and work arrays, checkpoint), inverse mass,
+   radius. */
+#define ARRAYS_BOUND (5 + STF_HISTORY_ARRAYS_MAX + STF_WORK_ARRAYS_MAX + STF_CHANGING_MAX)
 #define ROWS_BOUND (STF_DIMENSIONS_MAX * ARRAYS_BOUND + 2)
 
 /*
@@ -29,6 +30,7 @@ static void lay_out(stf_storage *storage, const stf_world *world)
     const size_t vectors = storage->capacity * world->dimensions;
     const size_t parts = stf_world_parts(world, storage->capacity / storage->stride);
     const size_t work = storage->whole ? vectors : parts * storage->stride * world->dimensions;
+    stf_real *arrays[STF_CHANGING_MAX];
 
     storage->bytes = storage->taken = 0;
     storage->position = take(storage, vectors);
@@ -42,6 +44,7 @@ static void lay_out(stf_storage *storage, const stf_world *world)
         storage->history[k] = take(storage, vectors);
     for (int k = 0; k < storage->work_arrays; k++)
         storage->work[k] = take(storage, work);
+    storage->checkpoint = storage->guarded ? take(storage, vectors * stf_storage_changing(storage, arrays)) : NULL;
 }
 
 /* Copies an array of `rows` components a block. Strides differ only while there is one block. */
@@ -120,14 +123,16 @@ static int larger(int a, int b) { return a > b ? a : b; }
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole)
 {
     const stf_storage *old = &world->storage;
+    const bool guarded = world->guard.mode != STF_GUARD_OFF;
 
     if (old->memory && capacity <= old->capacity && integrator->work_arrays <= old->work_arrays &&
-        integrator->history_arrays <= old->history_arrays && whole <= old->whole)
+        integrator->history_arrays <= old->history_arrays && whole <= old->whole && guarded <= old->guarded)
         return STF_OK;
     if (capacity > (SIZE_MAX - (ARRAYS_BOUND + 2) * PAGE) / sizeof(stf_real) / ROWS_BOUND - STF_BLOCK_MAX)
         return STF_ERROR_MEMORY;
 
     stf_storage new = {.whole = whole || old->whole,
+                       .guarded = guarded || old->guarded,
                        .history_arrays = larger(integrator->history_arrays, old->history_arrays),
                        .work_arrays = larger(integrator->work_arrays, old->work_arrays)};
     choose_blocks(&new, capacity > old->capacity ? capacity : old->capacity);
@@ -144,6 +149,7 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
         clear_array(new.history[k], &new, world->dimensions, world->count);
     stf_storage_release(world);
     world->storage = new;
+    world->checkpoint.is_valid = false;
     return STF_OK;
 }
 
@@ -166,6 +172,21 @@ size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
     }
     for (int k = 0; k < world->integrator->history_arrays; k++)
         kept[n++] = (stf_kept){storage->history[k], dimensions, STF_KEPT_ANYTHING};
+    return n;
+}
+
+size_t stf_storage_changing(const stf_storage *storage, stf_real *arrays[STF_CHANGING_MAX])
+{
+    size_t n = 0;
+
+    arrays[n++] = storage->position;
+    arrays[n++] = storage->velocity;
+    if (storage->position_rest) {
+        arrays[n++] = storage->position_rest;
+        arrays[n++] = storage->velocity_rest;
+    }
+    for (int k = 0; k < storage->history_arrays; k++)
+        arrays[n++] = storage->history[k];
     return n;
 }
 

@@ -36,6 +36,13 @@
 #define stf_fields_pack stf_fields_pack_f64
 #define stf_fields_unpack stf_fields_unpack_f64
 #define stf_storage_kept stf_storage_kept_f64
+#define stf_storage_changing stf_storage_changing_f64
+#define stf_world_advance stf_world_advance_f64
+#define stf_guard_complete stf_guard_complete_f64
+#define stf_guard_reset stf_guard_reset_f64
+#define stf_guard_run stf_guard_run_f64
+#define stf_guard_interval stf_guard_interval_f64
+#define stf_guard_step stf_guard_step_f64
 #endif
 
 /* All arrays of a world, in one piece of memory. Blocks that hold particles have position, velocity and
@@ -48,13 +55,23 @@ typedef struct stf_storage {
     size_t stride;   /* particles a block, a power of two */
     unsigned shift;  /* stride == 1 << shift */
     bool whole;      /* work arrays are as large as the world, else as one block for each part of a step */
+    bool guarded;    /* has room for a checkpoint */
     int history_arrays, work_arrays;
     stf_real *position, *velocity, *previous;         /* [capacity * dimensions], in blocks; previous NULL if not kept */
     stf_real *position_rest, *velocity_rest;          /* as position; NULL in worlds that do not compensate */
     stf_real *inverse_mass, *radius;                  /* [capacity]; radius NULL if not kept */
     stf_real *history[STF_HISTORY_ARRAYS_MAX];        /* as position */
     stf_real *work[STF_WORK_ARRAYS_MAX];
+    stf_real *checkpoint;                             /* as stf_storage_changing, one array after the other */
 } stf_storage;
+
+/* The last look of the guard, and the state that it found good (stf_storage.checkpoint). */
+typedef struct stf_checkpoint {
+    bool is_valid;
+    bool history_stale; /* then */
+    bool is_suspect;    /* a flag was raised since, maybe by history that will not be finite later: every tick is looked at */
+    uint64_t tick, next; /* when it was, and when the next look is */
+} stf_checkpoint;
 
 /* A force of a world. */
 typedef struct stf_added_force {
@@ -80,6 +97,12 @@ struct stf_world {
     size_t count;
     stf_storage storage;
     bool history_stale;
+
+    stf_guard guard;
+    stf_fault fault;
+    stf_checkpoint checkpoint;
+    bool clears_flags; /* flags were raised once: from then on they are cleared before each step */
+    bool *raised; /* in a step that is watched: gets whether a part of it raised a flag (flags.h); else NULL */
 
     stf_added_force *forces;
     size_t force_count, force_capacity;
@@ -174,11 +197,16 @@ static inline unsigned stf_world_parts(const stf_world *world, size_t most)
     return most < 2 || tasks < 2 ? 1 : most < tasks ? (unsigned)most : tasks;
 }
 
+/* As below, on the engine's threads, and takes note of the flags that they raise. */
+void stf_guard_run(const stf_world *world, unsigned parts, void (*task)(void *, unsigned), void *context);
+
 /* Calls task(context, part) for every part, on the engine's threads if there are several. */
 static inline void stf_world_run(const stf_world *world, unsigned parts, void (*task)(void *, unsigned), void *context)
 {
     if (parts == 1)
         task(context, 0);
+    else if (world->raised)
+        stf_guard_run(world, parts, task, context);
     else
         world->parallel.run(world->parallel.user, parts, task, context);
 }
@@ -231,5 +259,32 @@ typedef struct stf_kept {
 
 /* All that its integrator keeps of the world, in an order that depends on nothing else; returns how many. */
 size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);
+
+#define STF_CHANGING_MAX (4 + STF_HISTORY_ARRAYS_MAX)
+
+/* What the steps after this one start from and a step changes: vectors, in an order that depends on nothing; how many. */
+size_t stf_storage_changing(const stf_storage *storage, stf_real *arrays[STF_CHANGING_MAX]);
+
+/* Where the checkpoint has the k-th of those. */
+static inline stf_real *stf_storage_checkpoint(const stf_world *world, size_t k)
+{
+    return world->storage.checkpoint + k * world->storage.capacity * world->dimensions;
+}
+
+/* Runs ticks, and nobody looks. */
+void stf_world_advance(stf_world *world, unsigned ticks);
+
+/* ---- the guard, for what makes and steps a world ---- */
+
+/* Fills in what was left to the library. Errors: PARAMETERS. */
+stf_result stf_guard_complete(stf_guard *guard);
+
+/* Ticks from look to look. */
+unsigned stf_guard_interval(const stf_world *world);
+
+/* No fault, and no checkpoint: something else than a step has changed the world. */
+void stf_guard_reset(stf_world *world);
+
+stf_result stf_guard_step(stf_world *world, unsigned ticks);
 
 #endif

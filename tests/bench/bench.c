@@ -127,6 +127,8 @@ static bool check_all(void)
         {FREE, LIBRARY_THREADS, "rk4", 7777},
         {CLOTH, LIBRARY_THREADS, NULL, 64 * 64},
         {PAIRS, LIBRARY_THREADS, NULL, 777},
+        {FREE, LIBRARY_GUARDED, "velocity_verlet", 7777},
+        {CLOTH, LIBRARY_GUARDED, NULL, 64 * 64},
     };
     const bench_precision *const precisions[] = {&bench_float, &bench_double};
     bool same = true;

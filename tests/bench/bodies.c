@@ -194,6 +194,7 @@ stf_world *bench_world_create(const bench_scene *scene, stf_allocator allocator)
                                .step = (double)law.dt,
                                .gravity = {law.gravity[0], law.gravity[1], law.gravity[2]},
                                .compensated = scene->form == LIBRARY_COMPENSATED,
+                               .guard.mode = scene->form == LIBRARY_GUARDED ? STF_GUARD_FREEZE : STF_GUARD_OFF,
                                .allocator = allocator,
                                .parallel = scene->form == LIBRARY_THREADS ? bench_threads() : (stf_parallel){0}};
     stf_world *world = NULL;

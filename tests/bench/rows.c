@@ -181,6 +181,24 @@ static void threads_group(bench_group *g, const bench_precision *p, const char *
     compare(add_row(g, p, name, two, springs ? "ns/spring" : pairs ? "ns/pair" : "ns/particle"), RATIO, one, one, 1 / 1.8);
 }
 
+/* The guard beside the same without: whole intervals, so that each sample has its looks. */
+static void guard_group(bench_group *g, const bench_precision *p, const char *name, bench_scene scene)
+{
+    const bool small = scene.n <= 100, springs = scene.kind == CLOTH || scene.kind == GRAPH, pairs = scene.kind == PAIRS;
+    const double n = (double)scene.n, a_step = small ? 1 : springs ? (double)bench_springs(&scene) : pairs ? n * (n - 1) : n;
+    bench_scene guarded = scene;
+    bench_row *row;
+
+    guarded.form = LIBRARY_GUARDED;
+    const size_t off = add_case(g, p, scene, BENCH_INTERVAL * a_step), on = add_case(g, p, guarded, BENCH_INTERVAL * a_step);
+    g->cases[off].run = g->cases[on].run = p->run_interval;
+    row = add_row(g, p, name, on, small ? "ns/step" : springs ? "ns/spring" : pairs ? "ns/pair" : "ns/particle");
+    if (small)
+        compare(row, DIFFERENCE, off, off, 60);
+    else
+        compare(row, RATIO, off, off, 1.03);
+}
+
 static void machine_group(bench_group *g, const bench_precision *p, size_t n)
 {
     const size_t copy = add_case(g, p, (bench_scene){MACHINE, COPY, EULER, n}, (double)n);
@@ -253,6 +271,22 @@ static void small_groups(bench_group *g, const bench_precision *p, const taker *
     threads_group(fresh(g), p, "two threads, all-pairs gravity", (bench_scene){PAIRS, LIBRARY, EULER, 4000}), give(g, to);
 }
 
+/* Up to what still takes seconds: a run is an interval. */
+static void guard_groups(bench_group *g, const bench_precision *p, const taker *to)
+{
+    static const size_t small[] = {1, 100};
+
+    for (size_t i = 0; i < COUNT_OF(small); i++)
+        guard_group(fresh(g), p, "guard, step of a small world", (bench_scene){FREE, LIBRARY, EULER, small[i]}), give(g, to);
+    for (size_t c = 0; counts[c] <= QUICK_MOST; c++)
+        guard_group(fresh(g), p, "guard, semi_implicit_euler", (bench_scene){FREE, LIBRARY, EULER, counts[c]}), give(g, to);
+    guard_group(fresh(g), p, "guard, rk4", (bench_scene){FREE, LIBRARY, RK4, counts[2]}), give(g, to);
+    guard_group(fresh(g), p, "guard, quadratic drag and attractor", (bench_scene){FIELD, LIBRARY, RK4, 1000}), give(g, to);
+    guard_group(fresh(g), p, "guard, cloth", (bench_scene){CLOTH, LIBRARY, EULER, 64 * 64}), give(g, to);
+    guard_group(fresh(g), p, "guard, random springs", (bench_scene){GRAPH, LIBRARY, EULER, 1000}), give(g, to);
+    guard_group(fresh(g), p, "guard, all-pairs gravity", (bench_scene){PAIRS, LIBRARY, EULER, 1000}), give(g, to);
+}
+
 void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void *user)
 {
     const bench_precision *const precisions[] = {&bench_float, &bench_double};
@@ -268,6 +302,7 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         for (size_t c = 0; c < COUNT_OF(counts) - 1 && (!quick || counts[c] <= QUICK_MOST); c += 3)
             field_group(fresh(&g), p, counts[c]), give(&g, &to);
         small_groups(&g, p, &to);
+        guard_groups(&g, p, &to);
         if (quick)
             continue;
         rest_group(fresh(&g), p, counts[COUNT_OF(counts) - 2]), give(&g, &to);

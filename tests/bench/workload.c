@@ -119,6 +119,12 @@ static void run(void *context)
     s->run(s);
 }
 
+static void run_interval(void *context)
+{
+    for (int step = 0; step < BENCH_INTERVAL; step++)
+        run(context);
+}
+
 /* ---- the check ----------------------------------------------------------------------------------------------------------- */
 
 #define CHECKED_STEPS 20
@@ -181,7 +187,7 @@ static bool same_bits(const stf_world *world, const stf_world *other)
     return same;
 }
 
-static bool check_threads(const bench_scene *scene)
+static bool check_same(const bench_scene *scene)
 {
     const bench_scene ours = {scene->kind, LIBRARY, scene->integrator, scene->n};
     subject *one = setup(&ours), *two = setup(scene);
@@ -192,7 +198,8 @@ static bool check_threads(const bench_scene *scene)
     if (one && two)
         same = same_bits(one->world, two->world);
     if (!same)
-        fprintf(stderr, "bench: scene %d: two threads give other bits than one: mend the library\n", (int)scene->kind);
+        fprintf(stderr, "bench: scene %d: %s: mend the library\n", (int)scene->kind,
+                scene->form == LIBRARY_THREADS ? "two threads give other bits than one" : "the guard changes bits");
     teardown(one);
     teardown(two);
     return same;
@@ -201,7 +208,7 @@ static bool check_threads(const bench_scene *scene)
 static bool check(const bench_scene *scene)
 {
     if (bench_is_library(scene))
-        return check_threads(scene);
+        return check_same(scene);
 
     const bench_scene ours = {scene->kind, LIBRARY, scene->integrator, scene->n};
     subject *library = setup(&ours), *other = setup(scene);
@@ -270,6 +277,7 @@ const bench_precision bench_float =
         .real_bytes = sizeof(stf_real),
         .setup = setup,
         .run = run,
+        .run_interval = run_interval,
         .teardown = teardown,
         .check = check,
         .world_bytes = world_bytes,

@@ -28,6 +28,7 @@ typedef enum bench_form {
     LIBRARY_AT_REST,  /* slowed by drag until velocities are as small as reals get */
     LIBRARY_COMPENSATED,
     LIBRARY_THREADS,  /* on two threads */
+    LIBRARY_GUARDED,  /* with the guard on */
     REFERENCE,        /* the loop of the integrator; of springs, runs; of pairs, tiles */
     EDGES,            /* a gather and a scatter a spring */
     EDGES_SORTED,     /* by first end, then by second */
@@ -43,13 +44,14 @@ typedef struct bench_scene {
     size_t n;               /* particles; of a cloth, a square number */
 } bench_scene;
 
-static inline bool bench_is_library(const bench_scene *scene) { return scene->form <= LIBRARY_THREADS; }
+static inline bool bench_is_library(const bench_scene *scene) { return scene->form <= LIBRARY_GUARDED; }
 
 typedef struct bench_precision {
     const char *name;
     size_t real_bytes;
     void *(*setup)(const void *scene); /* for measure_case; run makes one step */
     void (*run)(void *context);
+    void (*run_interval)(void *context); /* as many steps as the guard lets go by between two looks, in calls of one */
     void (*teardown)(void *context);
     /* Whether this form moves as the library does, to round-off (on two threads: bit by bit); else says so on stderr. */
     bool (*check)(const bench_scene *scene);
@@ -58,6 +60,8 @@ typedef struct bench_precision {
 } bench_precision;
 
 extern const bench_precision bench_float, bench_double;
+
+#define BENCH_INTERVAL 256 /* the guard's longest of its own */
 
 /* Springs of a scene. */
 size_t bench_springs(const bench_scene *scene);

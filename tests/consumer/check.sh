@@ -76,7 +76,7 @@ is_once() {
     stf_trade | stf_trade_def | stf_trade_begin) false ;;
     stf_trade_*) ;; # references, rows, and what asks them
     stf_real | stf_result | stf_allocator | stf_parallel | stf_clock | stf_force_kind | stf_force_id | stf_energy) ;;
-    stf_mismatch | stf_stability | stf_stability_def) ;;
+    stf_guard | stf_guard_mode | stf_fault | stf_fault_kind | stf_mismatch | stf_stability | stf_stability_def) ;;
     *) false ;;
     esac
 }
