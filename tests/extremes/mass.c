@@ -1,0 +1,139 @@
+/* Mass ratios from 1 : 1e-12 to 1 : 1e12, tied by a spring or by gravity; immovable particles among them. */
+#include "lab.h"
+#include "support/theory.h"
+
+#define TICKS 500
+#define ROUNDINGS 8
+#define Z_SQUARE 0.01 /* (omega dt)^2 of the pair */
+
+enum { STILL, DRIFTING, FIRST, SECOND }; /* two immovable particles, and the pair */
+
+/* The ratio of the second mass to the first, 1 kg; INFINITY: the second is immovable. */
+static double inverse_of(const row *at) { return (double)(stf_real)(1 / at->value); }
+
+static stf_world *pair_world(const setting *s, const row *at, double v)
+{
+    stf_world *world = lab_world(s, (stf_world_def){.step = 1});
+
+    lab_add(world, -1, 0, 0);
+    lab_add(world, 0, 1, 0);
+    lab_add(world, 1, 0, 1);
+    lab_add(world, 0, 0, inverse_of(at));
+    if (v > 0) {
+        stf_particle first = lab_particle(world, FIRST);
+        first.velocity.y = (stf_real)v;
+        MUST(stf_world_set(world, FIRST, &first));
+    }
+    return world;
+}
+
+static void expect_immovable(cell *c, const stf_world *world, const row *at)
+{
+    EXPECT(c, lab_x(world, STILL) == -1 && lab_v(world, STILL) == 0);
+    EXPECT(c, lab_x(world, DRIFTING) == (double)stf_world_ticks(world) && lab_v(world, DRIFTING) == 1);
+    if (isinf(at->value))
+        EXPECT(c, lab_x(world, SECOND) == 0 && lab_v(world, SECOND) == 0);
+}
+
+/* The largest |m v| of either, kg m/s. */
+static double momentum_of(const stf_world *world, const row *at)
+{
+    const double second = isinf(at->value) ? 0 : fabs(lab_v(world, SECOND)) / inverse_of(at);
+
+    return fmax(fabs(lab_v(world, FIRST)), second);
+}
+
+/* Both ends get the same newtons, which a tick then rounds and adds: so much of the momentum is lost or made, in all ticks. */
+static double momentum_tolerance(double most, double newtons)
+{
+    return TICKS * ROUNDINGS * REAL_EPSILON * (most + newtons);
+}
+
+static void put_kept(cell *c, const row *at, double lost)
+{
+    if (isinf(at->value))
+        cell_word(c, "exact");
+    else
+        cell_number(c, "kept to ", lost, "");
+}
+
+/* Whatever the masses, y = x1 - x2 obeys y'' = -k (1/m1 + 1/m2) y: theory gives every tick. */
+static void spring(cell *c, const setting *s, const row *at)
+{
+    const double both = 1 + inverse_of(at);
+    const stf_spring record = {.a = FIRST, .b = SECOND, .stiffness = (stf_real)(Z_SQUARE / both)};
+    const double z_square = (double)record.stiffness * both, z = sqrt(z_square);
+    stf_world *world = pair_world(s, at, 0);
+    theory t = theory_start(s->integrator, z_square, 0, 1, 0);
+    double most = 0, worst = 0, error = 0, momentum[STF_DIMENSIONS_MAX] = {0};
+
+    lab_force(world, &stf_force_springs, &record);
+    for (int n = 1; n <= TICKS; n++) {
+        MUST(stf_world_step(world, 1));
+        theory_step(&t);
+        most = fmax(most, momentum_of(world, at));
+        error = fmax(1, theory_spring_growth(s->integrator, z)) * error + ROUNDINGS * REAL_EPSILON * hypot(t.x, t.u / z);
+        EXPECT_CLOSE(c, lab_x(world, FIRST) - lab_x(world, SECOND), t.x, 2 * error);
+        EXPECT_CLOSE(c, lab_v(world, FIRST) - lab_v(world, SECOND), t.u, 2 * error);
+        if (!isinf(at->value))
+            MUST(stf_world_momentum(world, momentum));
+        worst = fmax(worst, fabs(momentum[0]));
+    }
+    EXPECT_CLOSE(c, worst, 0, momentum_tolerance(most, (double)record.stiffness * exp(TICKS * Z_SQUARE / 2)));
+    expect_immovable(c, world, at);
+    put_kept(c, at, worst / most);
+    stf_world_destroy(world);
+}
+
+static const row ratios[] = {
+    {"1 : 1", 1, false},       {"1 : 1e3", 1e3, false},   {"1 : 1e6", 1e6, false},         {"1 : 1e9", 1e9, false},
+    {"1 : 1e12", 1e12, false}, {"1 : 1e-6", 1e-6, false}, {"1 : 1e-12", 1e-12, false}, {"1 : immovable", INFINITY, false},
+};
+
+AXIS(axis_mass_spring) = {
+    .title = "Two masses on a spring, by their ratio, for 500 ticks",
+    .holds = "The distance is that of the theory for k (1/m1 + 1/m2), to a few ulps a tick; momentum stays 0 to round-off (the number:\n"
+             "in parts of the largest m v); immovable particles keep position and velocity to the last bit.",
+    ROWS(ratios),
+    .run = spring,
+};
+
+/* The orbit of y = x1 - x2 is that of one particle around a centre of G (m1 + m2), under the same integrator. */
+static void gravity(cell *c, const setting *s, const row *at)
+{
+    const double mass = 1 / inverse_of(at), second = isinf(at->value) ? 0 : mass;
+    const stf_all_pairs_gravity record = {.gravitational_constant = (stf_real)(Z_SQUARE / (1 + second))};
+    const double strength = (double)record.gravitational_constant * (1 + second), speed = (double)(stf_real)sqrt(Z_SQUARE);
+    const stf_attractor centre = {.strength = (stf_real)strength};
+    stf_world *world = pair_world(s, at, speed), *orbit = pair_world(s, at, speed);
+    double start[STF_DIMENSIONS_MAX], momentum[STF_DIMENSIONS_MAX];
+
+    lab_force(world, &stf_force_all_pairs_gravity, &record);
+    lab_force(orbit, &stf_force_attractor, isinf(at->value) ? NULL : &centre);
+    MUST(stf_world_momentum(world, start));
+    for (int n = 1; n <= TICKS; n++) {
+        MUST(stf_world_step(world, 1));
+        MUST(stf_world_step(orbit, 1));
+        const stf_vector one = lab_particle(world, FIRST).position, two = lab_particle(world, SECOND).position;
+        const stf_vector expected = lab_particle(orbit, FIRST).position;
+        /* an error of the speed is one of the period: along the orbit it grows by 3 omega dt a tick */
+        const double tolerance = ROUNDINGS * n * (1 + 3 * n * sqrt(Z_SQUARE)) * REAL_EPSILON;
+        EXPECT_CLOSE(c, one.x - two.x, expected.x, tolerance * fmax(1, fabs((double)two.x)));
+        EXPECT_CLOSE(c, one.y - two.y, expected.y, tolerance * fmax(1, fabs((double)two.y)));
+    }
+    MUST(stf_world_momentum(world, momentum));
+    const double lost = hypot(momentum[0] - start[0], momentum[1] - start[1]);
+    EXPECT_CLOSE(c, lost, 0, momentum_tolerance(2 * speed, Z_SQUARE));
+    expect_immovable(c, world, at);
+    put_kept(c, at, lost / speed);
+    stf_world_destroy(orbit);
+    stf_world_destroy(world);
+}
+
+AXIS(axis_mass_gravity) = {
+    .title = "Two masses in each other's orbit, by their ratio, for 500 ticks of 0.1 / omega",
+    .holds = "The difference of their positions moves as one particle around a centre of G (m1 + m2); momentum is kept to round-off\n"
+             "(the number: what is lost of it); the immovable neither pull nor feel, so that a pair with one of them flies straight.",
+    ROWS(ratios),
+    .run = gravity,
+};
