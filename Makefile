@@ -230,7 +230,7 @@ trade: $(TRADE)
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) $(TRADE) library
+test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)

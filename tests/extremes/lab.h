@@ -53,9 +53,9 @@ static inline double lab_ulp(double x)
 
 /* What is smaller than this, in m or m/s, may come to rest. */
 #ifdef STF_DOUBLE
-#define LAB_REST 1e-160
+#define LAB_REST 1e-150
 #else
-#define LAB_REST 1e-20
+#define LAB_REST 1e-16
 #endif
 
 #endif

@@ -14,7 +14,8 @@ static const char *const integrators[] = {"explicit_euler", "semi_implicit_euler
 
 #define AXES(X) \
     X(axis_step) X(axis_step_end) X(axis_drag) X(axis_spring) X(axis_mass_spring) X(axis_mass_gravity) X(axis_distance) \
-    X(axis_distance_spring) X(axis_velocity)
+    X(axis_distance_spring) X(axis_velocity) X(axis_scale_springs) X(axis_scale_attractor) X(axis_scale_all_pairs) \
+    X(axis_scale_drag) X(axis_coincident) X(axis_through) X(axis_count) X(axis_run_flight) X(axis_run_spring) X(axis_ticks)
 
 #define DECLARE(name) extern const axis name##_float, name##_double;
 #define LIST(name) {&name##_float, &name##_double},
@@ -24,30 +25,36 @@ static const axis *const axes[][2] = {AXES(LIST)};
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 typedef struct total {
-    bool quick;
+    bool check; /* no table, and no heavy cells */
     unsigned cells, broken;
     char report[64][400]; /* one line for each of the first broken cells */
 } total;
 
-/* semi_implicit_euler as "semi_implicit" over "euler" */
-static void print_heads(const char *precision)
+/* The table is printed cell by cell, as some take long. */
+static void show(const total *t, int width, const char *text)
 {
-    char first[COUNT_OF(integrators)][CELL_TEXT + 1];
+    if (!t->check)
+        printf("%-*s", width, text);
+    fflush(stdout);
+}
 
-    printf("%-*s", LABEL, precision);
+/* semi_implicit_euler as "semi_implicit" over "euler" */
+static void show_heads(const total *t, const char *precision)
+{
+    show(t, LABEL, precision);
     for (size_t i = 0; i < COUNT_OF(integrators); i++) {
-        snprintf(first[i], sizeof first[i], "%s", integrators[i]);
-        char *cut = strrchr(first[i], '_');
-        if (cut)
-            *cut = 0;
-        printf("%-*s", COLUMN, first[i]);
+        char first[CELL_TEXT + 1];
+        const char *cut = strrchr(integrators[i], '_');
+        snprintf(first, sizeof first, "%.*s", cut ? (int)(cut - integrators[i]) : CELL_TEXT, integrators[i]);
+        show(t, COLUMN, first);
     }
-    printf("\n%-*s", LABEL, "");
+    show(t, 0, "\n");
+    show(t, LABEL, "");
     for (size_t i = 0; i < COUNT_OF(integrators); i++) {
         const char *cut = strrchr(integrators[i], '_');
-        printf("%-*s", COLUMN, cut ? cut + 1 : "");
+        show(t, COLUMN, cut ? cut + 1 : "");
     }
-    printf("\n");
+    show(t, 0, "\n");
 }
 
 static void run_cell(total *t, const axis *a, const row *r, const char *integrator, const char *precision)
@@ -56,8 +63,8 @@ static void run_cell(total *t, const axis *a, const row *r, const char *integrat
     cell c = {.text = ""};
 
     a->run(&c, &s, r);
-    printf("%s%-*s", c.broken[0] ? "!" : "", COLUMN - (c.broken[0] != 0), c.text);
-    fflush(stdout);
+    show(t, c.broken[0] != 0, c.broken[0] ? "!" : "");
+    show(t, COLUMN - (c.broken[0] != 0), c.text);
     t->cells++;
     if (!c.broken[0])
         return;
@@ -69,34 +76,35 @@ static void run_cell(total *t, const axis *a, const row *r, const char *integrat
 
 static void run_axis(total *t, const axis *a, const char *precision)
 {
-    print_heads(precision);
+    show_heads(t, precision);
     for (const row *r = a->rows; r < a->rows + a->row_count; r++) {
-        if (r->heavy && t->quick)
+        if (r->heavy && t->check)
             continue;
-        printf("%-*s", LABEL, r->label);
+        show(t, LABEL, r->label);
         for (size_t i = 0; i < COUNT_OF(integrators); i++)
             run_cell(t, a, r, integrators[i], precision);
-        printf("\n");
+        show(t, 0, "\n");
     }
-    printf("\n");
+    show(t, 0, "\n");
 }
 
 int main(int count, char **arguments)
 {
     static total t;
 
-    t.quick = count == 2 && strcmp(arguments[1], "--quick") == 0;
-    if (count > 1 && !t.quick) {
-        fprintf(stderr, "extremes: usage: extremes [--quick]: without what takes long or much memory\n");
+    t.check = count == 2 && strcmp(arguments[1], "--check") == 0;
+    if (count > 1 && !t.check) {
+        fprintf(stderr, "extremes: give no option, or --check: no table, and without what takes long or much memory\n");
         return EXIT_FAILURE;
     }
     for (size_t i = 0; i < COUNT_OF(axes); i++) {
-        printf("%s\n%s\n\n", axes[i][0]->title, axes[i][0]->holds);
+        if (!t.check)
+            printf("%s\n%s\n\n", axes[i][0]->title, axes[i][0]->holds);
         for (size_t p = 0; p < COUNT_OF(precisions); p++)
             run_axis(&t, axes[i][p], precisions[p]);
     }
     for (unsigned i = 0; i < t.broken && i < COUNT_OF(t.report); i++)
         fprintf(stderr, "%s\n", t.report[i]);
-    printf("%u cells, %u broken\n", t.cells, t.broken);
+    printf("extremes: %u of %u cells hold\n", t.cells - t.broken, t.cells);
     return t.broken ? EXIT_FAILURE : EXIT_SUCCESS;
 }

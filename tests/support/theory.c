@@ -55,16 +55,19 @@ static double stability_function(const char *integrator, double x, double y, dou
     return sum;
 }
 
-/* Both Verlet methods, whose acceleration is one prediction old, obey v(n+2) = (1 - 3 q / 2) v(n+1) + (q / 2) v(n). */
-double theory_drag_growth(const char *integrator, double q)
+double theory_drag_factor(const char *integrator, double q)
 {
     double imaginary;
 
-    if (is_verlet(integrator)) {
-        const double sum = 1 - 1.5 * q;
-        return (fabs(sum) + sqrt(sum * sum + 2 * q)) / 2;
-    }
-    return fabs(stability_function(integrator, -q, 0, &imaginary));
+    return stability_function(integrator, -q, 0, &imaginary);
+}
+
+/* Both Verlet methods, whose acceleration is one prediction old, obey v(n+2) = (1 - 3 q / 2) v(n+1) + (q / 2) v(n). */
+double theory_drag_growth(const char *integrator, double q)
+{
+    const double sum = 1 - 1.5 * q;
+
+    return is_verlet(integrator) ? (fabs(sum) + sqrt(sum * sum + 2 * q)) / 2 : fabs(theory_drag_factor(integrator, q));
 }
 
 /* The symplectic methods have x(n+1) - (2 - z^2) x(n) + x(n-1) = 0. */

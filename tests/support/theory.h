@@ -6,6 +6,9 @@
 #ifndef STEADFAST_TESTS_THEORY_H
 #define STEADFAST_TESTS_THEORY_H
 
+/* R(-q): what a step multiplies a velocity by under drag alone. Not of the Verlet methods, which look back at one more. */
+double theory_drag_factor(const char *integrator, double q);
+
 /* The largest factor that a step of this integrator can have under drag alone, and that of the amplitude of a spring alone. */
 double theory_drag_growth(const char *integrator, double q);
 double theory_spring_growth(const char *integrator, double z);
