@@ -123,8 +123,8 @@ static const row points[] = {
 
 AXIS(axis_coincident) = {
     .title = "600 particles at one point for 100 ticks, some immovable, by what acts between them",
-    .holds = "A force without a direction is 0, whatever the velocities; all particles move as those of a world without it, to the\n"
-             "last bit; the energy is finite.",
+    .holds = "A force without a direction is 0, whatever the velocities; all particles move as those of a world without it,\n"
+             "to the last bit; the energy is finite.",
     ROWS(points),
     .run = crowd,
 };
@@ -155,7 +155,8 @@ static const row ways[] = {{"omega dt = 1", 1, false}};
 
 AXIS(axis_through) = {
     .title = "Through the anchor of a spring, for 12 ticks",
-    .holds = "Theory's x(n) and v(n); the symplectic methods, whose period is 6 ticks, stand at the very point 4 times (the number).",
+    .holds = "Theory's x(n) and v(n); the symplectic methods, whose period is 6 ticks, stand at the very point 4 times (the\n"
+             "number).",
     ROWS(ways),
     .run = through,
 };

@@ -81,8 +81,8 @@ static const row counts[] = {
 
 AXIS(axis_count) = {
     .title = "Particles in the world, falling with drag for 3 ticks",
-    .holds = "Each has the bits of the same particle in a world of seven; momentum and energy are the sums of all; an empty world\n"
-             "has neither, and its ticks and time go on.",
+    .holds = "Each has the bits of the same particle in a world of seven; momentum and energy are the sums of all; an empty\n"
+             "world has neither, and its ticks and time go on.",
     ROWS(counts),
     .run = count,
 };

@@ -47,13 +47,14 @@ static const row places[] = {
 
 AXIS(axis_distance) = {
     .title = "A walk of 10 s at 1 m/s and 60 ticks a second, by distance from the origin",
-    .holds = "Frozen, to the last bit, where v dt is less than half the space between two reals; the number: below which speed (1 %\n"
-             "less is frozen, 1 % more moves by one real a tick). Else off by at most half a space a tick: the number.",
+    .holds = "Frozen, to the last bit, where v dt is less than half the space between two reals; the number: below which\n"
+             "speed (1 % less is frozen, 1 % more moves by one real a tick). Else off by at most half a space a tick: the\n"
+             "number.",
     ROWS(places),
     .run = flight,
 };
 
-/* The spring's own z is 0.1: some ten swings. Theory starts from where the particle was put, next to a metre from the anchor. */
+/* omega dt is 0.1: some ten swings. Theory starts from where the particle was put, about a metre from the anchor. */
 static void swing(cell *c, const setting *s, const row *at)
 {
     const stf_anchored_spring record = {.anchor = {(stf_real)at->value, 0, 0}, .stiffness = (stf_real)0.01};
@@ -83,8 +84,9 @@ static void swing(cell *c, const setting *s, const row *at)
 
 AXIS(axis_distance_spring) = {
     .title = "Ten swings of 1 m around an anchor, at 63 ticks a swing, by distance from the origin",
-    .holds = "Every tick within half a space between reals, summed up, of the theory's swing from where the particle stands when it is\n"
-             "put a metre away; no swing where the next real is more than two metres away. The number: off at the end.",
+    .holds = "Every tick within half a space between reals, summed up, of the theory's swing from where the particle stands\n"
+             "when it is put a metre away; no swing where the next real is more than two metres away. The number: off at the\n"
+             "end.",
     ROWS(places),
     .run = swing,
 };

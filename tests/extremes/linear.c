@@ -63,7 +63,7 @@ static bool overflows(const run *r)
            (r->z > 0 && log2(r->t.largest_product) + 2 * r->t.exponent >= most);
 }
 
-/* Returns the tick at which the world is no longer finite, 0 if it is to the end; theory has to say the same, up to roundings. */
+/* Returns the tick at which the world is no longer finite, or 0. Theory has to say the same, up to roundings. */
 static unsigned follow(cell *c, run *r, unsigned ticks)
 {
     const unsigned slack = 1 + (unsigned)(mixing(r->z) * r->error / fmax(r->growth - 1, REAL_EPSILON));
@@ -174,9 +174,9 @@ static const row springs[] = {
 
 AXIS(axis_spring) = {
     .title = "An undamped spring, omega dt",
-    .holds = "x(n) and v(n) are M^n of the start to a few ulps a tick: bounded, with a frequency that is too high by the number\n"
-             "shown, 2 asin(z/2) / z - 1; or the amplitude grows or decays by |R(iz)| - 1 a tick. Beyond imaginary_stability\n"
-             "particle 3 is found non-finite at the tick at which M^n leaves the reals.",
+    .holds = "x(n) and v(n) are M^n of the start to a few ulps a tick: bounded, with a frequency that is too high by the\n"
+             "number shown, 2 asin(z/2) / z - 1; or the amplitude grows or decays by |R(iz)| - 1 a tick. Beyond\n"
+             "imaginary_stability particle 3 is found non-finite at the tick at which M^n leaves the reals.",
     ROWS(springs),
     .run = spring,
 };

@@ -107,8 +107,8 @@ static void spring(cell *c, const setting *s, const row *at)
 
 AXIS(axis_run_spring) = {
     .title = "A spring of 50 ticks a swing, by the ticks of one call",
-    .holds = "The energy is that of the start times |R(iz)|^2n, within the swing of the symplectic methods and a random walk of\n"
-             "roundings; or it is past the reals, at the tick at which theory says so, to a swing.",
+    .holds = "The energy is that of the start times |R(iz)|^2n, within the swing of the symplectic methods and a random walk\n"
+             "of roundings; or it is past the reals, at the tick at which theory says so, to a swing.",
     ROWS(lengths),
     .run = spring,
 };
@@ -169,7 +169,8 @@ static const row passes[] = {{"2^32", 1, false}, {"2^33", 2, false}, {"2^48", 65
 
 AXIS(axis_ticks) = {
     .title = "Ticks past 2^32, at 60 a second",
-    .holds = "Ticks are counted, time = ticks x step to the last bit, as forces hear it; a change of the step goes on from there.",
+    .holds = "Ticks are counted, time = ticks x step to the last bit, as forces hear it; a change of the step goes on from\n"
+             "there.",
     ROWS(passes),
     .run = ticks_past,
 };

@@ -133,8 +133,8 @@ static const row scales[] = {
     {"2^60, 2^480", 60, false},    {"2^66, 2^528", 66, false},    {"2^80, 2^640", 80, false},
 };
 
-#define HOLDS \
-    "2^e times as large, it moves with the same digits, exactly, for as long as squares of lengths are normal numbers; off by\n" \
+#define HOLDS                                                                                                      \
+    "2^e times as large, it moves with the same digits, exactly, for as long as squares are normal numbers; off by\n" \
     "what they lose where they are denormal (the number: in lengths); "
 
 static void scale_springs(cell *c, const setting *s, const row *at)
@@ -144,7 +144,8 @@ static void scale_springs(cell *c, const setting *s, const row *at)
 
 AXIS(axis_scale_springs) = {
     .title = "Three masses on damped springs, by their scale in m (float, double)",
-    .holds = HOLDS "no force where they are 0, non-finite at\nonce where they are infinite.",
+    .holds = HOLDS "no force where they are 0, non-finite at\n"
+                   "once where they are infinite.",
     ROWS(scales),
     .run = scale_springs,
 };
@@ -156,7 +157,8 @@ static void scale_attractor(cell *c, const setting *s, const row *at)
 
 AXIS(axis_scale_attractor) = {
     .title = "Three orbits of a softened attractor, by their scale in m (float, double)",
-    .holds = HOLDS "no force where they are 0 or infinite. The header\npromises 1e-18 to 1e18 m (2^-60 to 2^60) in float.",
+    .holds = HOLDS "no force where they are 0 or infinite.\n"
+                   "The header promises 1e-18 to 1e18 m (2^-60 to 2^60) in float.",
     ROWS(scales),
     .run = scale_attractor,
 };
@@ -180,7 +182,8 @@ static void scale_drag(cell *c, const setting *s, const row *at)
 
 AXIS(axis_scale_drag) = {
     .title = "Quadratic drag, by the scale of speeds in m/s (float, double)",
-    .holds = HOLDS "no force where they are 0, non-finite at\nonce where they are infinite.",
+    .holds = HOLDS "no force where they are 0, non-finite at\n"
+                   "once where they are infinite.",
     ROWS(scales),
     .run = scale_drag,
 };

@@ -60,8 +60,9 @@ static const row speeds[] = {
 
 AXIS(axis_velocity) = {
     .title = "Free flight for 32 ticks of 1/64 s, by speed",
-    .holds = "The velocity keeps every bit and x = v t to half an ulp a tick, but: position Verlet keeps v dt, and so loses what is\n"
-             "denormal of it; RK4 adds up six velocities and improved Euler two, which are infinite near the largest real.",
+    .holds = "The velocity keeps every bit and x = v t to half an ulp a tick, but: position Verlet keeps v dt, and so loses\n"
+             "what is denormal of it; RK4 adds up six velocities and improved Euler two, which are infinite near the largest\n"
+             "real.",
     ROWS(speeds),
     .run = flight,
 };

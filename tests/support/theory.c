@@ -12,7 +12,7 @@ static bool is_verlet(const char *integrator) { return is(integrator, "position_
 
 static bool is_symplectic(const char *integrator) { return is_verlet(integrator) || is(integrator, "semi_implicit_euler"); }
 
-/* ---- Runge-Kutta methods: stage s starts from the step's start along the slopes of the stage before -------------------------- */
+/* ---- Runge-Kutta methods: stage s lies along the slopes of the stage before ---------------------------------------------- */
 
 #define STAGES_MAX 4
 
