@@ -4,7 +4,7 @@
 #include "lab.h"
 #include "support/theory.h"
 
-#define TICKS 100
+#define TICKS 10
 #define CROWD 600 /* several blocks */
 
 static const stf_vector point = {(stf_real)0.3, (stf_real)-0.7, (stf_real)0.1};
@@ -122,7 +122,7 @@ static const row points[] = {
 };
 
 AXIS(axis_coincident) = {
-    .title = "600 particles at one point for 100 ticks, some immovable, by what acts between them",
+    .title = "600 particles at one point for 10 ticks, some immovable, by what acts between them",
     .holds = "A force without a direction is 0, whatever the velocities; all particles move as those of a world without it,\n"
              "to the last bit; the energy is finite.",
     ROWS(points),

@@ -135,7 +135,7 @@ static void spring(cell *c, const setting *s, const row *at)
 static const row ratios[] = {
     {"1 : 1", 1, false},       {"1 : 1e3", 1e3, false},   {"1 : 1e6", 1e6, false},         {"1 : 1e9", 1e9, false},
     {"1 : 1e12", 1e12, false}, {"1 : 1e40", 1e40, false}, {"1 : 1e-6", 1e-6, false},       {"1 : 1e-12", 1e-12, false},
-    {"1 : immovable", INFINITY, false},
+    {"1 : immovable", (double)INFINITY, false},
 };
 
 AXIS(axis_mass_spring) = {

@@ -140,7 +140,7 @@ static void ticks_past(cell *c, const setting *s, const row *at)
     const double other_step = 1.0 / 50;
     const bool asks_for_end = strcmp(s->integrator, "velocity_verlet") == 0;
     stf_world *world = lab_world(s, (stf_world_def){.step = STEP});
-    double heard = NAN;
+    double heard = (double)NAN;
 
     for (unsigned i = 0; i < calls; i++)
         MUST(stf_world_step(world, FULL));
@@ -149,7 +149,7 @@ static void ticks_past(cell *c, const setting *s, const row *at)
     lab_force(world, &ear_force, &(ear){&heard});
     for (unsigned n = 0; n < 12; n++) {
         const double start = (double)(before + n) * STEP, end = (double)(before + n + 1) * STEP;
-        heard = NAN;
+        heard = (double)NAN;
         MUST(stf_world_step(world, 1));
         if (asks_for_end && n > 0) /* in the first tick it has no acceleration yet, and asks for the start */
             EXPECT_CLOSE(c, heard, end, DBL_EPSILON * end + REAL_EPSILON * STEP);

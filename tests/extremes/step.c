@@ -106,7 +106,7 @@ static void end(cell *c, const setting *s, const row *at)
 static const row ends[] = {
     {"-1 s", -1, false},     {"1e-39 s", 1e-39, false}, {"least normal", (double)REAL_LEAST, false},
     {"1e37 s", 1e37, false}, {"1e39 s", 1e39, false},   {"largest", (double)REAL_MAX, false},
-    {"NaN", NAN, false},     {"infinity", INFINITY, false},
+    {"NaN", (double)NAN, false},     {"infinity", (double)INFINITY, false},
 };
 
 AXIS(axis_step_end) = {
