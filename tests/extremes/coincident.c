@@ -60,9 +60,9 @@ static const struct {
     {attractor, 0}, {soft_attractor, 0}, {anchored_springs, 0},
 };
 
-static stf_world *crowd_world(const setting *s, double speed)
+static stf_world *crowd_world(const char *integrator, double speed)
 {
-    stf_world *world = lab_world(s, (stf_world_def){.step = STF_DEFAULT_STEP, .capacity = CROWD});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = STF_DEFAULT_STEP, .capacity = CROWD});
 
     for (int i = 0; i < CROWD; i++)
         MUST(stf_world_add(world, &(stf_particle){.position = point, .velocity = {(stf_real)speed, 0, (stf_real)(-speed / 3)},
@@ -98,10 +98,11 @@ static void expect_no_force(cell *c, const stf_world *world)
     EXPECT(c, sum == 0);
 }
 
-static void crowd(cell *c, const setting *s, const row *at)
+static void crowd(cell *c, const char *integrator, const row *at)
 {
     const size_t which = (size_t)at->value;
-    stf_world *world = crowd_world(s, crowds[which].speed), *free_flight = crowd_world(s, crowds[which].speed);
+    stf_world *world = crowd_world(integrator, crowds[which].speed);
+    stf_world *free_flight = crowd_world(integrator, crowds[which].speed);
     stf_energy energy;
 
     crowds[which].add_force(world);
@@ -130,11 +131,11 @@ AXIS(axis_coincident) = {
 };
 
 /* Through the anchor at each half swing, at z = 1 to the very point: small whole numbers, which have no rounding. */
-static void through(cell *c, const setting *s, const row *at)
+static void through(cell *c, const char *integrator, const row *at)
 {
     const stf_anchored_spring record = {.stiffness = (stf_real)at->value};
-    stf_world *world = lab_world(s, (stf_world_def){.step = 1});
-    theory t = theory_start(s->integrator, at->value, 0, 0, 1);
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1});
+    theory t = theory_start(integrator, at->value, 0, 0, 1);
     unsigned at_the_point = 0;
 
     lab_add(world, 0, 1, 1);
@@ -146,7 +147,7 @@ static void through(cell *c, const setting *s, const row *at)
         EXPECT_CLOSE(c, lab_v(world, 0), t.u, 8 * n * REAL_EPSILON * fmax(1, t.largest_sum));
         at_the_point += lab_x(world, 0) == 0;
     }
-    EXPECT(c, !(stf_integrator_find(s->integrator)->flags & STF_SYMPLECTIC) || at_the_point == 4);
+    EXPECT(c, !(stf_integrator_find(integrator)->flags & STF_SYMPLECTIC) || at_the_point == 4);
     cell_number(c, "at it ", at_the_point, " times");
     stf_world_destroy(world);
 }

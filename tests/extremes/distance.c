@@ -10,12 +10,12 @@
  * A tick adds v dt to x, rounded to the nearest real: nothing happens below half the space to the next one, and just above it
  * the particle goes a whole one a tick. All others are off by half a space a tick at most, and by what v dt itself is off.
  */
-static void flight(cell *c, const setting *s, const row *at)
+static void flight(cell *c, const char *integrator, const row *at)
 {
     enum { WALKS, JUST_FROZEN, JUST_MOVES };
     const double start = (double)(stf_real)at->value, space = lab_ulp(start), dt = (double)(stf_real)STEP;
     const double freezing = space / 2 / dt, seconds = TICKS * STEP, end = start + seconds;
-    stf_world *world = lab_world(s, (stf_world_def){.step = STEP});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = STEP});
 
     lab_add(world, start, 1, 1);
     lab_add(world, start, freezing * 0.99, 1);
@@ -55,14 +55,14 @@ AXIS(axis_distance) = {
 };
 
 /* omega dt is 0.1: some ten swings. Theory starts from where the particle was put, about a metre from the anchor. */
-static void swing(cell *c, const setting *s, const row *at)
+static void swing(cell *c, const char *integrator, const row *at)
 {
     const stf_anchored_spring record = {.anchor = {(stf_real)at->value, 0, 0}, .stiffness = (stf_real)0.01};
     const double centre = (double)record.anchor.x, z = sqrt((double)record.stiffness), space = lab_ulp(centre + 1);
     const double amplitude = (double)(stf_real)(centre + 1) - centre;
-    const double growth = fmax(1, theory_spring_growth(s->integrator, z));
-    stf_world *world = lab_world(s, (stf_world_def){.step = 1});
-    theory t = theory_start(s->integrator, (double)record.stiffness, 0, amplitude, 0);
+    const double growth = fmax(1, theory_spring_growth(integrator, z));
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1});
+    theory t = theory_start(integrator, (double)record.stiffness, 0, amplitude, 0);
     double error = 0, off = 0;
 
     lab_add(world, centre + 1, 0, 1);

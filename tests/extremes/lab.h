@@ -8,12 +8,11 @@
 #include "steadfast/steadfast.h"
 #include "support/real.h"
 
-/* The def is completed by what the column stands for. */
-static inline stf_world *lab_world(const setting *s, stf_world_def def)
+static inline stf_world *lab_world(const char *integrator, stf_world_def def)
 {
     stf_world *world;
 
-    def.integrator = stf_integrator_find(s->integrator);
+    def.integrator = stf_integrator_find(integrator);
     MUST(stf_world_create(&def, &world));
     return world;
 }

@@ -4,13 +4,12 @@
 #include <string.h>
 
 #include "matrix.h"
+#include "steadfast/integrator.h"
 
 #define LABEL 15
 #define COLUMN (CELL_TEXT + 1)
 
 static const char *const precisions[] = {"float", "double"};
-static const char *const integrators[] = {"explicit_euler", "semi_implicit_euler", "midpoint",       "improved_euler",
-                                          "rk4",            "position_verlet",     "velocity_verlet"};
 
 #define AXES(X) \
     X(axis_step) X(axis_step_end) X(axis_drag) X(axis_spring) X(axis_mass_spring) X(axis_mass_gravity) X(axis_distance) \
@@ -42,16 +41,16 @@ static void show(const total *t, int width, const char *text)
 static void show_heads(const total *t, const char *precision)
 {
     show(t, LABEL, precision);
-    for (size_t i = 0; i < COUNT_OF(integrators); i++) {
+    for (int i = 0; stf_integrators[i]; i++) {
         char first[CELL_TEXT + 1];
-        const char *cut = strrchr(integrators[i], '_');
-        snprintf(first, sizeof first, "%.*s", cut ? (int)(cut - integrators[i]) : CELL_TEXT, integrators[i]);
+        const char *name = stf_integrators[i]->name, *cut = strrchr(name, '_');
+        snprintf(first, sizeof first, "%.*s", cut ? (int)(cut - name) : CELL_TEXT, name);
         show(t, COLUMN, first);
     }
     show(t, 0, "\n");
     show(t, LABEL, "");
-    for (size_t i = 0; i < COUNT_OF(integrators); i++) {
-        const char *cut = strrchr(integrators[i], '_');
+    for (int i = 0; stf_integrators[i]; i++) {
+        const char *cut = strrchr(stf_integrators[i]->name, '_');
         show(t, COLUMN, cut ? cut + 1 : "");
     }
     show(t, 0, "\n");
@@ -59,10 +58,9 @@ static void show_heads(const total *t, const char *precision)
 
 static void run_cell(total *t, const axis *a, const row *r, const char *integrator, const char *precision)
 {
-    const setting s = {.integrator = integrator};
     cell c = {.text = ""};
 
-    a->run(&c, &s, r);
+    a->run(&c, integrator, r);
     show(t, c.broken[0] != 0, c.broken[0] ? "!" : "");
     show(t, COLUMN - (c.broken[0] != 0), c.text);
     t->cells++;
@@ -81,8 +79,8 @@ static void run_axis(total *t, const axis *a, const char *precision)
         if (r->heavy && t->check)
             continue;
         show(t, LABEL, r->label);
-        for (size_t i = 0; i < COUNT_OF(integrators); i++)
-            run_cell(t, a, r, integrators[i], precision);
+        for (int i = 0; stf_integrators[i]; i++)
+            run_cell(t, a, r, stf_integrators[i]->name, precision);
         show(t, 0, "\n");
     }
     show(t, 0, "\n");

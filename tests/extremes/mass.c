@@ -12,9 +12,9 @@ enum { STILL, DRIFTING, FIRST, SECOND, RUN }; /* two immovable particles, the pa
 /* The ratio of the second mass to the first, 1 kg; INFINITY: the second is immovable. */
 static double inverse_of(const row *at) { return (double)(stf_real)(1 / at->value); }
 
-static stf_world *pair_world(const setting *s, const row *at, double v)
+static stf_world *pair_world(const char *integrator, const row *at, double v)
 {
-    stf_world *world = lab_world(s, (stf_world_def){.step = 1});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1});
 
     lab_add(world, -1, 0, 0);
     lab_add(world, 0, 1, 0);
@@ -88,9 +88,9 @@ static void expect_same_run(cell *c, const stf_world *world)
 /* A mass whose reciprocal the precision does not hold with all digits. */
 static bool is_refused(const row *at) { return !isinf(at->value) && inverse_of(at) < (double)REAL_LEAST; }
 
-static void refused(cell *c, const setting *s, const row *at)
+static void refused(cell *c, const char *integrator, const row *at)
 {
-    stf_world *world = lab_world(s, (stf_world_def){.step = 1});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1});
 
     EXPECT(c, stf_world_add(world, &(stf_particle){.inverse_mass = (stf_real)inverse_of(at)}, NULL) == STF_ERROR_MASS);
     EXPECT(c, stf_world_count(world) == 0);
@@ -99,18 +99,18 @@ static void refused(cell *c, const setting *s, const row *at)
 }
 
 /* Whatever the masses, y = x1 - x2 obeys y'' = -k (1/m1 + 1/m2) y: theory gives every tick. */
-static void spring(cell *c, const setting *s, const row *at)
+static void spring(cell *c, const char *integrator, const row *at)
 {
     if (is_refused(at)) {
-        refused(c, s, at);
+        refused(c, integrator, at);
         return;
     }
 
     const double both = 1 + inverse_of(at);
     const stf_spring record = {.a = FIRST, .b = SECOND, .stiffness = (stf_real)(Z_SQUARE / both)};
     const double z_square = (double)record.stiffness * both, z = sqrt(z_square);
-    stf_world *world = pair_world(s, at, 0);
-    theory t = theory_start(s->integrator, z_square, 0, 1, 0);
+    stf_world *world = pair_world(integrator, at, 0);
+    theory t = theory_start(integrator, z_square, 0, 1, 0);
     double most = 0, worst = 0, error = 0, momentum[STF_DIMENSIONS_MAX] = {0};
 
     add_run(world, record);
@@ -118,7 +118,7 @@ static void spring(cell *c, const setting *s, const row *at)
         MUST(stf_world_step(world, 1));
         theory_step(&t);
         most = fmax(most, momentum_of(world, at));
-        error = fmax(1, theory_spring_growth(s->integrator, z)) * error + ROUNDINGS * REAL_EPSILON * hypot(t.x, t.u / z);
+        error = fmax(1, theory_spring_growth(integrator, z)) * error + ROUNDINGS * REAL_EPSILON * hypot(t.x, t.u / z);
         EXPECT_CLOSE(c, lab_x(world, FIRST) - lab_x(world, SECOND), t.x, 2 * error);
         EXPECT_CLOSE(c, lab_v(world, FIRST) - lab_v(world, SECOND), t.u, 2 * error);
         if (!isinf(at->value))
@@ -147,10 +147,10 @@ AXIS(axis_mass_spring) = {
 };
 
 /* The orbit of y = x1 - x2 is that of one particle around a centre of G (m1 + m2), under the same integrator. */
-static void gravity(cell *c, const setting *s, const row *at)
+static void gravity(cell *c, const char *integrator, const row *at)
 {
     if (is_refused(at)) {
-        refused(c, s, at);
+        refused(c, integrator, at);
         return;
     }
 
@@ -158,7 +158,7 @@ static void gravity(cell *c, const setting *s, const row *at)
     const stf_all_pairs_gravity record = {.gravitational_constant = (stf_real)(Z_SQUARE / (1 + second))};
     const double strength = (double)record.gravitational_constant * (1 + second), speed = (double)(stf_real)sqrt(Z_SQUARE);
     const stf_attractor centre = {.strength = (stf_real)strength};
-    stf_world *world = pair_world(s, at, speed), *orbit = pair_world(s, at, speed);
+    stf_world *world = pair_world(integrator, at, speed), *orbit = pair_world(integrator, at, speed);
     double start[STF_DIMENSIONS_MAX], momentum[STF_DIMENSIONS_MAX];
 
     lab_force(world, &stf_force_all_pairs_gravity, &record);

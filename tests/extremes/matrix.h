@@ -35,11 +35,6 @@ void cell_expect_close(cell *c, double actual, double expected, double tolerance
 #define MUST(result) matrix_must(result, __FILE__, __LINE__)
 void matrix_must(stf_result result, const char *file, int line);
 
-/* What a column stands for. */
-typedef struct setting {
-    const char *integrator;
-} setting;
-
 typedef struct row {
     const char *label;
     double value;
@@ -50,7 +45,7 @@ typedef struct axis {
     const char *title, *holds; /* and what must hold, by what */
     const row *rows;
     size_t row_count;
-    void (*run)(cell *c, const setting *s, const row *r);
+    void (*run)(cell *c, const char *integrator, const row *r);
 } axis;
 
 #define ROWS(array) .rows = (array), .row_count = sizeof(array) / sizeof *(array)

@@ -8,10 +8,10 @@
 #define ROUNDINGS 8
 
 /* The walk of distance.c for days: from 0 on, so that reals lie further and further apart. */
-static void flight(cell *c, const setting *s, const row *at)
+static void flight(cell *c, const char *integrator, const row *at)
 {
     const double ticks = at->value, end = ticks * STEP;
-    stf_world *world = lab_world(s, (stf_world_def){.step = STEP});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = STEP});
 
     lab_add(world, 0, 1, 1);
     MUST(stf_world_step(world, (unsigned)ticks));
@@ -76,11 +76,11 @@ static void expect_leaving(cell *c, stf_world *world, double tick, double growth
     cell_tick(c, "non-finite", stf_world_ticks(world));
 }
 
-static void spring(cell *c, const setting *s, const row *at)
+static void spring(cell *c, const char *integrator, const row *at)
 {
-    const double z = sqrt(Z_SQUARE), growth = theory_spring_growth(s->integrator, z), ticks = at->value;
+    const double z = sqrt(Z_SQUARE), growth = theory_spring_growth(integrator, z), ticks = at->value;
     const double leaving = growth > 1 ? log((double)REAL_MAX) / 2 / log(growth) : (double)INFINITY; /* x^2 is past the reals */
-    stf_world *world = lab_world(s, (stf_world_def){.step = 1, .dimensions = 1});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1, .dimensions = 1});
 
     lab_add(world, 1, 0, 1);
     lab_force(world, &stf_force_anchored_springs, &(stf_anchored_spring){.stiffness = (stf_real)Z_SQUARE});
@@ -95,7 +95,7 @@ static void spring(cell *c, const setting *s, const row *at)
         EXPECT(c, !isfinite(energy_of(world)));
     else {
         const double factor = energy_of(world) / start, expected = exp(2 * ticks * log(growth));
-        const double most = swing_of(s->integrator, z) * (1 + 2 * walk_of(ticks));
+        const double most = swing_of(integrator, z) * (1 + 2 * walk_of(ticks));
         EXPECT(c, factor <= expected * most && factor >= expected / most);
         if (fabs(factor - 1) < 0.5)
             cell_change(c, "energy", factor - 1);
@@ -133,13 +133,13 @@ static const stf_force ear_force = {.name = "ear", .kind = STF_FIELD, .depends_o
                                     .apply = listen, .fields = STF_NOT_SAVED};
 
 /* An empty world gets there at once. Velocity Verlet asks for the end of the tick, which it adds up itself. */
-static void ticks_past(cell *c, const setting *s, const row *at)
+static void ticks_past(cell *c, const char *integrator, const row *at)
 {
     const unsigned calls = (unsigned)at->value;
     const uint64_t before = (uint64_t)FULL * calls;
     const double other_step = 1.0 / 50;
-    const bool asks_for_end = strcmp(s->integrator, "velocity_verlet") == 0;
-    stf_world *world = lab_world(s, (stf_world_def){.step = STEP});
+    const bool asks_for_end = strcmp(integrator, "velocity_verlet") == 0;
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = STEP});
     double heard = (double)NAN;
 
     for (unsigned i = 0; i < calls; i++)

@@ -58,7 +58,7 @@ static stf_vector times(double scale, double x, double y, double z)
     return (stf_vector){(stf_real)(scale * x), (stf_real)(scale * y), (stf_real)(scale * z)};
 }
 
-static stf_world *scaled_world(const setting *s, const system *sys, double scale, bool with_force)
+static stf_world *scaled_world(const char *integrator, const system *sys, double scale, bool with_force)
 {
     const double time = sys->scales_time ? scale : 1, v = scale / time;
     const stf_particle particles[PARTICLES] = {
@@ -66,7 +66,7 @@ static stf_world *scaled_world(const setting *s, const system *sys, double scale
         {.position = times(scale, -0.75, 0.5, 0.5), .velocity = times(v, -0.25, -0.5, 0.5), .inverse_mass = 2},
         {.position = times(scale, 0.5, -1, -0.25), .velocity = times(v, 0.75, 0, 0.25), .inverse_mass = (stf_real)0.5},
     };
-    stf_world *world = lab_world(s, (stf_world_def){.step = STEP * time});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = STEP * time});
 
     MUST(stf_world_add_many(world, particles, PARTICLES, NULL));
     if (with_force)
@@ -92,13 +92,13 @@ static double distance_of(const stf_world *world, const stf_world *other, double
  * A square of 2^(2 e) has lost 2^LEAST / 2^(2 e) of itself. Forces that are off by that much, of the order of 1 length / unit
  * of time^2, put particles off by a few of it in the unit of time that the run takes.
  */
-static void scale(cell *c, const setting *s, const row *at, const system *sys)
+static void scale(cell *c, const char *integrator, const row *at, const system *sys)
 {
     const int exponent = EXPONENTS * (int)at->value;
     const double by = ldexp(1, exponent), lost = ldexp(16, LEAST_EXPONENT - 2 * exponent);
     const bool too_large = 2 * exponent > MOST_EXPONENT, too_small = 2 * exponent + 2 < LEAST_EXPONENT;
-    stf_world *world = scaled_world(s, sys, by, true), *unit = scaled_world(s, sys, 1, true);
-    stf_world *free_flight = scaled_world(s, sys, by, false);
+    stf_world *world = scaled_world(integrator, sys, by, true), *unit = scaled_world(integrator, sys, 1, true);
+    stf_world *free_flight = scaled_world(integrator, sys, by, false);
     size_t index = PARTICLES;
 
     MUST(stf_world_step(world, 1));
@@ -137,9 +137,9 @@ static const row scales[] = {
     "2^e times as large, it moves with the same digits, exactly, for as long as squares are normal numbers; off by\n" \
     "what they lose where they are denormal (the number: in lengths); "
 
-static void scale_springs(cell *c, const setting *s, const row *at)
+static void scale_springs(cell *c, const char *integrator, const row *at)
 {
-    scale(c, s, at, &(system){.add_force = add_springs});
+    scale(c, integrator, at, &(system){.add_force = add_springs});
 }
 
 AXIS(axis_scale_springs) = {
@@ -150,9 +150,9 @@ AXIS(axis_scale_springs) = {
     .run = scale_springs,
 };
 
-static void scale_attractor(cell *c, const setting *s, const row *at)
+static void scale_attractor(cell *c, const char *integrator, const row *at)
 {
-    scale(c, s, at, &(system){.add_force = add_attractor, .scales_time = true, .flies_apart = true});
+    scale(c, integrator, at, &(system){.add_force = add_attractor, .scales_time = true, .flies_apart = true});
 }
 
 AXIS(axis_scale_attractor) = {
@@ -163,9 +163,9 @@ AXIS(axis_scale_attractor) = {
     .run = scale_attractor,
 };
 
-static void scale_all_pairs(cell *c, const setting *s, const row *at)
+static void scale_all_pairs(cell *c, const char *integrator, const row *at)
 {
-    scale(c, s, at, &(system){.add_force = add_all_pairs, .scales_time = true, .flies_apart = true});
+    scale(c, integrator, at, &(system){.add_force = add_all_pairs, .scales_time = true, .flies_apart = true});
 }
 
 AXIS(axis_scale_all_pairs) = {
@@ -175,9 +175,9 @@ AXIS(axis_scale_all_pairs) = {
     .run = scale_all_pairs,
 };
 
-static void scale_drag(cell *c, const setting *s, const row *at)
+static void scale_drag(cell *c, const char *integrator, const row *at)
 {
-    scale(c, s, at, &(system){.add_force = add_quadratic_drag});
+    scale(c, integrator, at, &(system){.add_force = add_quadratic_drag});
 }
 
 AXIS(axis_scale_drag) = {

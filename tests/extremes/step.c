@@ -15,14 +15,14 @@ static double fall(const char *integrator, double n, double dt)
 }
 
 /* Each tick rounds v, and what is added to it three times at most; errors of v then add up in x, which is rounded likewise. */
-static void decade(cell *c, const setting *s, const row *at)
+static void decade(cell *c, const char *integrator, const row *at)
 {
     const double dt = (double)(stf_real)at->value, n = TICKS;
-    const double v = 1 + n * GRAVITY * dt, x = fall(s->integrator, n, dt);
-    const double v_most = fmax(1, fabs(v)), x_most = fmax(fabs(x), fall(s->integrator, ceil(-1 / GRAVITY / dt), dt));
+    const double v = 1 + n * GRAVITY * dt, x = fall(integrator, n, dt);
+    const double v_most = fmax(1, fabs(v)), x_most = fmax(fabs(x), fall(integrator, ceil(-1 / GRAVITY / dt), dt));
     const double v_tolerance = n * REAL_EPSILON * (v_most / 2 + 3 * fabs(GRAVITY) * dt);
     const double x_tolerance = n * dt * v_tolerance / 2 + n * REAL_EPSILON * (x_most / 2 + 3 * v_most * dt);
-    stf_world *world = lab_world(s, (stf_world_def){.step = at->value, .gravity = {(stf_real)GRAVITY, 0, 0}});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = at->value, .gravity = {(stf_real)GRAVITY, 0, 0}});
 
     lab_add(world, 0, 1, 1);
     lab_add(world, 0, 1, 0); /* immovable: it does not fall */
@@ -50,10 +50,10 @@ AXIS(axis_step) = {
     .run = decade,
 };
 
-static void refused(cell *c, const setting *s, double step)
+static void refused(cell *c, const char *integrator, double step)
 {
-    const stf_world_def def = {.integrator = stf_integrator_find(s->integrator), .step = step};
-    stf_world *never = NULL, *world = lab_world(s, (stf_world_def){.step = 0.5});
+    const stf_world_def def = {.integrator = stf_integrator_find(integrator), .step = step};
+    stf_world *never = NULL, *world = lab_world(integrator, (stf_world_def){.step = 0.5});
 
     lab_add(world, 0, 1, 1);
     MUST(stf_world_step(world, 1));
@@ -76,23 +76,23 @@ static bool overflows(const char *integrator, double x, double increment)
 #define END_TICKS 8
 #define END_SPEED 0.5 /* m/s */
 
-static void end(cell *c, const setting *s, const row *at)
+static void end(cell *c, const char *integrator, const row *at)
 {
     if (!(at->value >= (double)REAL_LEAST && at->value <= (double)REAL_MAX)) {
-        refused(c, s, at->value);
+        refused(c, integrator, at->value);
         return;
     }
 
     const double increment = END_SPEED * at->value;
-    stf_world *world = lab_world(s, (stf_world_def){.step = at->value});
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = at->value});
     double x = 0;
 
     lab_add(world, 0, END_SPEED, 1);
     cell_word(c, "exact");
     for (unsigned n = 1; n <= END_TICKS; n++) {
         MUST(stf_world_step(world, 1));
-        EXPECT(c, stf_world_find_non_finite(world, NULL) == overflows(s->integrator, x, increment));
-        if (overflows(s->integrator, x, increment)) {
+        EXPECT(c, stf_world_find_non_finite(world, NULL) == overflows(integrator, x, increment));
+        if (overflows(integrator, x, increment)) {
             cell_tick(c, "non-finite", n);
             break;
         }
