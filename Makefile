@@ -124,6 +124,7 @@ help:
 	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
+	@echo "make extremes        steps, drags, springs, masses, places, speeds and counts at their extremes, as a matrix"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -229,7 +230,7 @@ trade: $(TRADE)
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) $(TRADE) library
+test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
@@ -251,6 +252,33 @@ $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
 	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+
+# ---- extremes: every integrator at the ends of its world, as a matrix --------------------------------------------------------
+
+EXTREMES_SOURCES := $(filter-out %/main.c %/matrix.c,$(wildcard tests/extremes/*.c))
+EXTREMES_OBJECTS := $(BUILD)/f32/tests/extremes/main.o $(BUILD)/f32/tests/extremes/matrix.o \
+                    $(EXTREMES_SOURCES:%.c=$(BUILD)/f32/%.o) $(EXTREMES_SOURCES:%.c=$(BUILD)/f64/%.o) \
+                    $(BUILD)/f32/tests/extremes/theory.o
+EXTREMES := $(BUILD)/extremes
+
+.PHONY: extremes
+extremes: $(EXTREMES)
+	$(EXTREMES)
+
+$(BUILD)/f32/tests/extremes/theory.o: tests/support/theory.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -Itests -c $< -o $@
+
+$(BUILD)/f32/tests/extremes/%.o: tests/extremes/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -Itests -c $< -o $@
+
+$(BUILD)/f64/tests/extremes/%.o: tests/extremes/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -DSTF_DOUBLE -Itests -c $< -o $@
+
+$(EXTREMES): $(EXTREMES_OBJECTS) $(STATIC)
+	$(say)$(LINK) $^ -lm -o $@
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
 for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
 run sh tests/trade/check.sh "$build"
+run "$build/extremes" --check
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

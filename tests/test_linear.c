@@ -6,18 +6,7 @@
 
 #include "scenes/scene.h"
 #include "support/check.h"
-
-/* 1 + z + z^2 / 2 + ... as far as the order of the Runge-Kutta method goes (orders 1, 2, 4 with as many stages). */
-static double stability_function_real(int order, double z)
-{
-    double term = 1, sum = 1;
-
-    for (int k = 1; k <= order; k++) {
-        term *= z / k;
-        sum += term;
-    }
-    return sum;
-}
+#include "support/theory.h"
 
 /*
  * v(n) over v(0) under v' = -k v, z = k dt. Both Verlet methods, whose acceleration is one prediction old, obey
@@ -31,17 +20,7 @@ static double drag_solution(const stf_integrator *integrator, double z, unsigned
         const double of_p = (first - q) / (p - q);
         return of_p * pow(p, n) + (1 - of_p) * pow(q, n);
     }
-    return pow(stability_function_real(integrator->order, -z), n);
-}
-
-/* The largest factor that a step can have: what rounding errors grow by. */
-static double drag_growth(const stf_integrator *integrator, double z)
-{
-    if (integrator == &stf_position_verlet || integrator == &stf_velocity_verlet) {
-        const double sum = 1 - 1.5 * z;
-        return (fabs(sum) + sqrt(sum * sum + 2 * z)) / 2;
-    }
-    return fabs(stability_function_real(integrator->order, -z));
+    return pow(theory_drag_factor(integrator->name, z), n);
 }
 
 static void drag_of_the_lecture_is_powers_of_the_amplification_factor(void **state)
@@ -53,7 +32,7 @@ static void drag_of_the_lecture_is_powers_of_the_amplification_factor(void **sta
     for (int i = 0; stf_integrators[i]; i++)
         for (size_t s = 0; s < COUNT_OF(steps); s++) {
             const stf_world_def def = {.integrator = stf_integrators[i], .step = steps[s]};
-            const double z = k * steps[s], growth = drag_growth(stf_integrators[i], z);
+            const double z = k * steps[s], growth = theory_drag_growth(stf_integrators[i]->name, z);
             stf_world *world;
             double roundings = 0, largest = 1;
 
@@ -260,18 +239,6 @@ static void springs_stay_bounded_whatever_happens_around_them_at_every_tick(void
     }
 }
 
-/* |R(i z)|^2: what a step multiplies the energy of a spring by. */
-static double energy_factor(const stf_integrator *integrator, double z)
-{
-    const double z2 = z * z, z4 = z2 * z2;
-
-    if (integrator->order == 1)
-        return 1 + z2;
-    if (integrator->order == 2)
-        return 1 + z4 / 4;
-    return 1 - z4 * z2 / 72 + z4 * z4 / 576;
-}
-
 static double energy_of(const stf_world *world)
 {
     stf_energy energy;
@@ -292,7 +259,7 @@ static void runge_kutta_methods_gain_or_lose_the_energy_that_theory_says(void **
         const double start = energy_of(world);
 
         assert_ok(stf_world_step(world, steps));
-        const double expected = pow(energy_factor(methods[i], z), steps);
+        const double expected = pow(theory_spring_growth(methods[i]->name, z), 2 * steps);
         /* A few roundings a step of each of x and v, which add up at worst, and count twice in the energy. */
         assert_close(energy_of(world) / start / expected, 1, steps * 2 * 2 * REAL_EPSILON);
         stf_world_destroy(world);

@@ -139,7 +139,8 @@ typedef struct stf_linear_drag {
 } stf_linear_drag;
 STF_API extern const stf_force stf_force_linear_drag;
 
-/* F = -c |v| v. Rayleigh's drag equation: c = rho C_d A / 2. Cost: one pass with a square root. No potential. */
+/* F = -c |v| v. Rayleigh's drag equation: c = rho C_d A / 2. Cost: one pass with a square root. No potential. In float, speeds
+   from 1e-18 to 1e18 m/s work: |v|^2 has to be a float. */
 typedef struct stf_quadratic_drag {
     stf_real coefficient; /* c, kg/m, 0 or more */
 } stf_quadratic_drag;
@@ -149,7 +150,7 @@ STF_API extern const stf_force stf_force_quadratic_drag;
  * Every record pulls every particle towards a point: F = -m mu d / (|d|^2 + e^2)^(3/2), d = x - position; potential -m mu /
  * sqrt(|d|^2 + e^2). Newton's law of gravitation with Plummer's softening (Plummer 1911). At the very point the force is 0.
  * Cost: one pass a record, with a square root and two divisions. An immovable particle feels nothing. In float,
- * distances r from 1e-18 to 1e18 m work, as long as mu / r, mu / r^2 and the newtons are floats.
+ * distances r from 1e-18 to 1e18 m work, as long as mu / r, mu / r^2 and the newtons are floats; further away it lets go.
  */
 typedef struct stf_attractor {
     stf_vector position; /* m */
@@ -162,7 +163,8 @@ STF_API extern const stf_force stf_force_attractor;
  * A damped spring from a particle to a fixed point: F = -(k (l - l0) + c (v . u)) u, d = x - anchor, l = |d|, u = d / l;
  * potential k (l - l0)^2 / 2. Hooke's law (De potentia restitutiva, 1678) with a damper along the spring (Witkin and Baraff,
  * Physically Based Modeling, 1997). Where l = 0 the spring has no direction and the force is 0. A field force: it ties no two
- * particles. The records are kept sorted. Cost: some ten operations a record; adding or setting n records sorts them.
+ * particles. The records are kept sorted. Cost: some ten operations a record; adding or setting n records sorts them. In float,
+ * lengths from 1e-18 to 1e18 m work, as long as speed x length is a float; what is longer makes the state non-finite.
  */
 typedef struct stf_anchored_spring {
     uint32_t particle;    /* index */
@@ -180,7 +182,7 @@ STF_API extern const stf_force stf_force_anchored_springs;
  * stiffnesses at a particle and m its mass, where that is largest (Gershgorin's bound; in a chain 2 sqrt(k / m)): omega dt
  * has to stay below the integrator's limit. The records are kept in an order of their own: where both ends of 16 or more
  * count up (the rows and columns of a cloth), whole vectors of them are computed at once, some four times as fast as one by
- * one. Adding or setting n springs sorts them: n log n, or one pass if they come in that order.
+ * one. Adding or setting n springs sorts them: n log n, or one pass if they come in that order. Range as above.
  */
 typedef struct stf_spring {
     uint32_t a, b;        /* indices; not the same */
@@ -193,7 +195,7 @@ STF_API extern const stf_force stf_force_springs;
 /*
  * Every particle pulls every other: F_i = -G m_i sum_j m_j d / (|d|^2 + e^2)^(3/2), d = x_i - x_j; potential
  * -G sum over pairs m_i m_j / sqrt(|d|^2 + e^2). Newton's law, Plummer's softening. Coincident particles do not pull
- * each other. An immovable particle has no finite mass and neither pulls nor feels: put an attractor there.
+ * each other. An immovable particle has no finite mass and neither pulls nor feels: put an attractor there. Range as above.
  * A link force. Cost: n^2 / 2 square roots and divisions, each pair once for both ends; no memory beyond the state.
  * One record.
  */

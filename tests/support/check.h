@@ -12,21 +12,8 @@
 
 #include <cmocka.h>
 
-#include <float.h>
-
 #include "steadfast/steadfast.h"
-
-#ifdef STF_DOUBLE
-#define REAL_EPSILON DBL_EPSILON
-#define REAL_MAX DBL_MAX
-#define REAL_LEAST DBL_MIN
-#define REAL_NAME "double"
-#else
-#define REAL_EPSILON ((double)FLT_EPSILON)
-#define REAL_MAX FLT_MAX
-#define REAL_LEAST FLT_MIN
-#define REAL_NAME "float"
-#endif
+#include "support/real.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
