@@ -93,7 +93,7 @@ static stf_world *world_of(const scenario *s, const stf_integrator *integrator, 
     def.step = STEP;
     def.gravity = (stf_vector){0, -1, 0};
     def.guard = guard;
-    def.compensated = s->is_compensated;
+    def.compensated = s->is_compensated && (integrator->flags & STF_COMPENSATES);
     stf_world *world = make_world(def);
     for (size_t i = 0; i < PARTICLES; i++) {
         const stf_real x = (stf_real)next_random(&seed), v = (stf_real)next_random(&seed);

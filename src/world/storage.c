@@ -30,7 +30,7 @@ static void lay_out(stf_storage *storage, const stf_world *world)
     const size_t vectors = storage->capacity * world->dimensions;
     const size_t parts = stf_world_parts(world, storage->capacity / storage->stride);
     const size_t work = storage->whole ? vectors : parts * storage->stride * world->dimensions;
-    stf_real *arrays[STF_CHANGING_MAX];
+    const size_t changing = (world->compensated ? 4 : 2) + (size_t)storage->history_arrays; /* as stf_storage_changing */
 
     storage->bytes = storage->taken = 0;
     storage->position = take(storage, vectors);
@@ -44,7 +44,7 @@ static void lay_out(stf_storage *storage, const stf_world *world)
         storage->history[k] = take(storage, vectors);
     for (int k = 0; k < storage->work_arrays; k++)
         storage->work[k] = take(storage, work);
-    storage->checkpoint = storage->guarded ? take(storage, vectors * stf_storage_changing(storage, arrays)) : NULL;
+    storage->checkpoint = storage->guarded ? take(storage, vectors * changing) : NULL;
 }
 
 /* Copies an array of `rows` components a block. Strides differ only while there is one block. */
