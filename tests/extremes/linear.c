@@ -2,9 +2,12 @@
  * Linear drag and springs, where theory (support/theory.h) gives the state after every tick, what it is multiplied by, and the
  * tick at which it leaves the reals. One particle of five moves; two of the others are immovable.
  */
+#include <string.h>
+
 #include "lab.h"
 #include "support/theory.h"
 
+#define PARTICLES 5
 #define MOVED 3               /* the particle that moves */
 #define TICKS 1000u           /* that a state is followed for */
 #define TICKS_GROWING 100000u /* that one is which grows, or until it is not finite */
@@ -13,10 +16,11 @@
 
 /* A run beside its theory, and how far apart the two may be. */
 typedef struct run {
-    stf_world *world;
+    stf_world *world, *guarded; /* the same twice, one of them with a guard that freezes */
     theory t;
     double z, q; /* omega dt or k dt: the other is 0 */
     double growth;
+    stf_particle last_good[PARTICLES]; /* the world's, after the last tick at which it was finite */
     double error, error_x; /* that roundings can have made so far: of the amplitude or velocity; under drag, of the position */
 } run;
 
@@ -78,6 +82,8 @@ static unsigned follow(cell *c, run *r, unsigned ticks)
             found = n;
             EXPECT(c, index == MOVED);
         }
+        for (size_t i = 0; i < PARTICLES && !found; i++)
+            r->last_good[i] = lab_particle(r->world, i);
         if (!found && !predicted)
             expect_theory(c, r);
     }
@@ -94,18 +100,48 @@ static void expect_others_as_they_were(cell *c, const stf_world *world, double t
     EXPECT(c, lab_x(world, 4) == 0 && lab_v(world, 4) == 0);
 }
 
+/* In one call and far beyond the tick at which the other left the finite: the guard names it, and has stopped before. */
+static void expect_guard(cell *c, const run *r, unsigned found)
+{
+    const unsigned ticks = (unsigned)stf_world_ticks(r->world), last_good = found ? found - 1 : ticks;
+    stf_fault fault = {.tick = 0};
+
+    EXPECT(c, stf_world_step(r->guarded, found ? 2 * ticks : ticks) == (found ? STF_ERROR_DIVERGED : STF_OK));
+    EXPECT(c, stf_world_fault(r->guarded, &fault) == (found > 0));
+    EXPECT(c, !found || (fault.tick == found && fault.particle == MOVED));
+    EXPECT(c, stf_world_ticks(r->guarded) == last_good);
+    for (size_t i = 0; i < PARTICLES; i++) {
+        const stf_particle p = lab_particle(r->guarded, i);
+        EXPECT(c, memcmp(&p, &r->last_good[i], sizeof p) == 0);
+    }
+}
+
+static stf_world *start_world(const char *integrator, stf_guard_mode guard, double x, double v)
+{
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1, .guard = {.mode = guard}});
+
+    lab_add(world, 1, 0, 0);
+    lab_add(world, 0, 1, 0);
+    lab_add(world, 0, 0, 1);
+    lab_add(world, x, v, 1);
+    lab_add(world, 0, 0, 2);
+    return world;
+}
+
 static run start(const char *integrator, double z_square, double q, double x, double v)
 {
     run r = {.z = sqrt(z_square), .q = q, .t = theory_start(integrator, z_square, q, x, v)};
 
     r.growth = z_square > 0 ? theory_spring_growth(integrator, r.z) : theory_drag_growth(integrator, q);
-    r.world = lab_world(integrator, (stf_world_def){.step = 1});
-    lab_add(r.world, 1, 0, 0);
-    lab_add(r.world, 0, 1, 0);
-    lab_add(r.world, 0, 0, 1);
-    lab_add(r.world, x, v, 1);
-    lab_add(r.world, 0, 0, 2);
+    r.world = start_world(integrator, STF_GUARD_OFF, x, v);
+    r.guarded = start_world(integrator, STF_GUARD_FREEZE, x, v);
     return r;
+}
+
+static void add_force(const run *r, const stf_force *force, const void *record)
+{
+    lab_force(r->world, force, record);
+    lab_force(r->guarded, force, record);
 }
 
 /* Factors within a rounding of 1 are 1. */
@@ -126,6 +162,8 @@ static void watch(cell *c, run *r)
     else
         cell_word(c, "bounded");
     expect_others_as_they_were(c, r->world, (double)stf_world_ticks(r->world));
+    expect_guard(c, r, found);
+    stf_world_destroy(r->guarded);
     stf_world_destroy(r->world);
 }
 
@@ -136,7 +174,7 @@ static void drag(cell *c, const char *integrator, const row *at)
     run r = start(integrator, 0, q, 0, 1);
 
     EXPECT(c, is_bounded(r.growth) ? fabs(q / limit - 1) < REAL_EPSILON : (q < limit) == (r.growth < 1));
-    lab_force(r.world, &stf_force_linear_drag, &record);
+    add_force(&r, &stf_force_linear_drag, &record);
     watch(c, &r);
 }
 
@@ -147,7 +185,7 @@ static void spring(cell *c, const char *integrator, const row *at)
     run r = start(integrator, (double)record.stiffness, 0, 1, 0);
 
     EXPECT(c, is_bounded(r.growth) || (r.z < limit) == (r.growth < 1));
-    lab_force(r.world, &stf_force_anchored_springs, &record);
+    add_force(&r, &stf_force_anchored_springs, &record);
     watch(c, &r);
 }
 
@@ -160,7 +198,7 @@ static const row drags[] = {
 AXIS(axis_drag) = {
     .title = "Linear drag, k dt",
     .holds = "v(n) = R(k dt)^n v(0) to a few ulps a tick; decays where |R| < 1, by |R| - 1 a tick, as real_stability says;\n"
-             "elsewhere particle 3 is found non-finite at the tick that R says.",
+             "elsewhere particle 3 is found non-finite at the tick that R says, and a guard names both and freezes before.",
     ROWS(drags),
     .run = drag,
 };
@@ -175,7 +213,8 @@ AXIS(axis_spring) = {
     .title = "An undamped spring, omega dt",
     .holds = "x(n) and v(n) are M^n of the start to a few ulps a tick: bounded, with a frequency that is too high by the\n"
              "number shown, 2 asin(z/2) / z - 1; or the amplitude grows or decays by |R(iz)| - 1 a tick. Beyond\n"
-             "imaginary_stability particle 3 is found non-finite at the tick at which M^n leaves the reals.",
+             "imaginary_stability particle 3 is found non-finite at the tick at which M^n leaves the reals, and a guard names\n"
+             "both and freezes before.",
     ROWS(springs),
     .run = spring,
 };
