@@ -274,7 +274,7 @@ determinism: | $(DEPS_FIRST)
 # After a change of what is computed; git diff shows which cells it changed.
 determinism-goldens: $(SAME_BITS)
 	@{ echo "# make determinism-goldens: scene, integrator, precision, ticks, those after which all was finite, hash of the state"; \
-	    $(SAME_BITS) --quick; $(SAME_BITS); } > $(GOLDENS).new && mv $(GOLDENS).new $(GOLDENS)
+	    $(SAME_BITS) --quick && $(SAME_BITS); } > $(BUILD)/goldens.txt && mv $(BUILD)/goldens.txt $(GOLDENS)
 
 $(BUILD)/f32/tests/determinism/%.o: tests/determinism/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
@@ -291,7 +291,7 @@ $(SAME_BITS): $(SAME_BITS_OBJECTS) $(STATIC)
 	$(say)$(LINK) $^ -lm -pthread -o $@
 
 $(SAME_BITS)-shared: $(SAME_BITS_OBJECTS) $(BUILD)/$(LINK_NAME)
-	$(say)$(LINK) $(SAME_BITS_OBJECTS) -L$(BUILD) -Wl,-rpath,$(abspath $(BUILD)) -lsteadfast -lm -pthread -o $@
+	$(say)$(LINK) $(SAME_BITS_OBJECTS) -L$(BUILD) -lsteadfast -lm -pthread -o $@
 
 # ---- soak: an hour of play with each integrator ------------------------------------------------------------------------------
 

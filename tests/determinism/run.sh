@@ -11,13 +11,21 @@ NOT_HERE=3 # what same_bits returns where the machine lacks the instruction set
 
 say() { printf "$format" "$1" "$2" "$3" "$4" "$5"; }
 
+# lacks DIRECTORY WHAT: notes what can't be proved here; say_lacks says it all.
+lacks() { echo "$2" >> "$1/lacks"; }
+say_lacks() { [ ! -s "$1/lacks" ] || echo "not proved, as it is not here: $(paste -s -d , "$1/lacks")"; }
+
 # A row: the directory that holds the builds, the build in it, the instruction set ("-": what the library picks) and options of
 # same_bits; below it the cells that differ. The option "shared", before all others: with the shared library.
 row() {
     directory=$1 build=$2 isa=$3 program=same_bits runner=
     shift 3
     how="$*"
-    case ${1-} in shared) program=same_bits-shared; shift ;; esac
+    if [ "${1-}" = shared ]; then
+        program=same_bits-shared
+        export LD_LIBRARY_PATH="./$build" DYLD_LIBRARY_PATH="./$build"
+        shift
+    fi
     case " $machines " in *" $build "*) runner=qemu-$build-static ;; esac
     unset STEADFAST_ISA
     [ "$isa" = - ] || export STEADFAST_ISA="$isa"
@@ -28,7 +36,7 @@ row() {
     case $status in
     0) equal=$said said= ;;
     1) equal=$(echo "$said" | tail -n 1) said=$(echo "$said" | sed '$d') ;;
-    $NOT_HERE) equal="not here" said= ;;
+    $NOT_HERE) equal="not here" said=; lacks "$directory" "$build $isa" ;;
     *) equal=failed ;;
     esac
     printf '%s\n' "$(say "$build" "$isa" "$how" "$equal" "$(($(date +%s) - started)) s")" ${said:+"$said"}
@@ -38,15 +46,17 @@ row() {
 # Runs the rows that come as lines, as many at once as there are cores. To xargs a blank at an end means that the line goes on.
 rows() { sed 's/ *$//' | xargs -P "$jobs" -L 1 sh "$0" row; }
 
-# The result of all is that of the last command here.
 test_build() {
-    directory=$(dirname "$1") build=$(basename "$1")
+    directory=$(dirname "$1") build=$(basename "$1") failed=
+    : > "$directory/lacks"
     say build ISA how "equal cells" time
     {
         for isa in baseline avx2 avx512; do echo "$directory $build $isa --quick"; done
         for how in "--threads 2" "--threads 7" --shuffle; do echo "$directory $build - --quick $how"; done
         echo "$directory $build - shared --quick"
-    } | rows
+    } | rows || failed=1
+    say_lacks "$directory"
+    [ -z "$failed" ]
 }
 
 here=build/determinism
@@ -62,14 +72,16 @@ can_link() { echo 'int main(void) { return 0; }' | $1 -static -x c - -o /dev/nul
 
 # The compilers and machines that are here, in $compilers and $guests; says what is not.
 look() {
-    compilers= guests= missing=0
+    compilers= guests=
+    mkdir -p $here
+    : > $here/lacks
     for cc in gcc clang; do
         if command -v $cc >/dev/null; then compilers="$compilers $cc"
-        else say $cc - "missing; type: sh .ci/deps only clang" - -; missing=$((missing + 1)); fi
+        else say $cc - "missing; type: sh .ci/deps only clang" - -; lacks $here $cc; fi
     done
     for m in $machines; do
         if can_link $m-linux-gnu-gcc && command -v qemu-$m-static >/dev/null; then guests="$guests $m"
-        else say $m - "missing; type: make deps-cross" - -; missing=$((missing + 1)); fi
+        else say $m - "missing; type: make deps-cross" - -; lacks $here $m; fi
     done
 }
 
@@ -120,13 +132,13 @@ compare_saves() {
 all() {
     say build ISA how "equal cells" time
     look
-    native="${compilers##* }-O3"
+    native="${compilers##* }-O3" failed=
     build_all
     list_writes "$@" | rows || failed=1
     list_reads | rows || failed=1
     compare_saves || failed=1
-    [ $missing -eq 0 ] || echo "$missing missing, and not proved"
-    [ -z "${failed-}" ]
+    say_lacks $here
+    [ -z "$failed" ]
 }
 
 case ${1-} in
