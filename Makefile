@@ -50,6 +50,11 @@ TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
 TESTS           := $(TEST_NAMES:%=$(BUILD)/tests/%-f32) $(TEST_NAMES:%=$(BUILD)/tests/%-f64)
 
+# The same bits everywhere.
+SAME_BITS         := $(BUILD)/same_bits
+SAME_BITS_OBJECTS := $(addprefix $(BUILD)/f32/tests/determinism/,main.o pool.o) $(foreach precision,f32 f64,\
+                     $(addprefix $(BUILD)/$(precision)/tests/determinism/,cell.o crowds.o) $(SCENE_SOURCES:%.c=$(BUILD)/$(precision)/%.o))
+
 # The benchmark. Its references are compiled for each instruction set, as the library's hot files are.
 BENCH_ISAS          := baseline $(ISAS)
 REFERENCE_SOURCES   := $(wildcard tests/bench/reference/*.c)
@@ -108,7 +113,7 @@ HAVE_CMOCKA  = pkg-config --exists cmocka 2>/dev/null
 HAVE_SDL     = pkg-config --exists sdl2 SDL2_ttf SDL2_image 2>/dev/null
 
 # Whatever is asked for together with deps waits for it, also under -j.
-DEPS_FIRST := $(filter deps deps-peers,$(MAKECMDGOALS))
+DEPS_FIRST := $(filter deps deps-peers deps-cross,$(MAKECMDGOALS))
 
 .PHONY: all library demo run trade pictures test bench bench-peers deps deps-peers install uninstall clean help
 .PHONY: need-cmocka need-sdl
@@ -125,6 +130,9 @@ help:
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
 	@echo "make extremes        steps, drags, springs, masses, places, speeds and counts at their extremes, as a matrix"
+	@echo "make determinism     the same bits with every compiler, instruction set, number of threads and machine here; long"
+	@echo "make deps-cross      install the compilers and emulators of other machines for it"
+	@echo "make soak            an hour of simulated play with each integrator: no drift of time, no growth of memory; a minute"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -230,7 +238,7 @@ trade: $(TRADE)
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes library
+test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes $(SAME_BITS) $(SAME_BITS)-shared library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
@@ -279,6 +287,48 @@ $(BUILD)/f64/tests/extremes/%.o: tests/extremes/%.c Makefile
 
 $(EXTREMES): $(EXTREMES_OBJECTS) $(STATIC)
 	$(say)$(LINK) $^ -lm -o $@
+
+# ---- determinism: the same bits everywhere -----------------------------------------------------------------------------------
+
+QUICK   =# determinism: QUICK=--quick: after 500 ticks, not 10,000
+GOLDENS := tests/determinism/goldens.txt
+
+.PHONY: determinism determinism-goldens deps-cross
+
+# With every compiler, optimisation, instruction set, number of threads and machine that is to be had here.
+determinism: | $(DEPS_FIRST)
+	@MAKE="$(MAKE_COMMAND)" sh tests/determinism/run.sh all $(QUICK)
+
+# After a change of what is computed; git diff shows which cells it changed.
+determinism-goldens: $(SAME_BITS)
+	@{ echo "# make determinism-goldens: scene, integrator, precision, ticks, those after which all was finite, hash of the state"; \
+	    $(SAME_BITS) --quick && $(SAME_BITS); } > $(BUILD)/goldens.txt && mv $(BUILD)/goldens.txt $(GOLDENS)
+
+$(BUILD)/f32/tests/determinism/%.o: tests/determinism/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -Idemo -Itests -c $< -o $@
+
+$(BUILD)/f64/tests/determinism/%.o: tests/determinism/%.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -DSTF_DOUBLE -Idemo -Itests -c $< -o $@
+
+deps-cross:
+	@sh .ci/deps only cross
+
+$(SAME_BITS): $(SAME_BITS_OBJECTS) $(STATIC)
+	$(say)$(LINK) $^ -lm -pthread -o $@
+
+$(SAME_BITS)-shared: $(SAME_BITS_OBJECTS) $(BUILD)/$(LINK_NAME)
+	$(say)$(LINK) $(SAME_BITS_OBJECTS) -L$(BUILD) -lsteadfast -lm -pthread -o $@
+
+# ---- soak: an hour of play with each integrator ------------------------------------------------------------------------------
+
+.PHONY: soak
+SOAK_SECONDS = 3600
+
+soak: $(BUILD)/tests/test_soak-f32 $(BUILD)/tests/test_soak-f64
+	$(BUILD)/tests/test_soak-f32 $(SOAK_SECONDS)
+	$(BUILD)/tests/test_soak-f64 $(SOAK_SECONDS)
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 

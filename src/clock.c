@@ -135,6 +135,8 @@ stf_result stf_clock_set_step(stf_clock *clock, double step)
         return STF_ERROR_NULL;
     if (!is_step(step))
         return STF_ERROR_STEP;
+    if (step == clock->step)
+        return STF_OK; /* as in the world: both round their time at the same ticks */
 
     clock->step_start_time = stf_clock_time(clock);
     clock->step_start_tick = clock->ticks;

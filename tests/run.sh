@@ -11,6 +11,7 @@ run() {
 for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
 for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
+run sh tests/determinism/run.sh test "$build"
 run sh tests/trade/check.sh "$build"
 run "$build/extremes" --check
 

@@ -665,6 +665,18 @@ static void what_is_set_aside_comes_back_after_a_shorter_step(void **state)
     assert_int_equal(ticks, 16);
 }
 
+/* After a tick of 1/60 s the time so far would be rounded once more if it were counted from there. */
+static void setting_the_step_that_it_has_changes_nothing(void **state)
+{
+    (void)state;
+    stf_clock clock = make_clock((stf_clock_def){.step = 1.0 / 60});
+
+    (void)advance(&clock, 0.02);
+    const stf_clock before = clock;
+    assert_ok(stf_clock_set_step(&clock, 1.0 / 60));
+    assert_memory_equal(&clock, &before, sizeof clock);
+}
+
 static void a_paused_clock_does_not_tick_when_its_step_gets_shorter(void **state)
 {
     (void)state;
@@ -889,6 +901,7 @@ int main(void)
         cmocka_unit_test(scale_is_simulated_seconds_a_real_second),
         cmocka_unit_test(a_new_scale_is_that_of_the_next_frame),
         cmocka_unit_test(what_is_set_aside_comes_back_after_a_shorter_step),
+        cmocka_unit_test(setting_the_step_that_it_has_changes_nothing),
         cmocka_unit_test(a_paused_clock_does_not_tick_when_its_step_gets_shorter),
         cmocka_unit_test(default_cap_follows_the_step),
         cmocka_unit_test(display_period_can_change_and_refuses_what_the_def_does),

@@ -28,8 +28,10 @@ static double largest_of(size_t n, const stf_real *values)
 {
     double largest = 0;
 
-    for (size_t i = 0; i < n; i++)
-        largest = fmax(largest, fabs((double)values[i]));
+    for (size_t i = 0; i < n; i++) {
+        const double size = fabs((double)values[i]);
+        largest = size > largest ? size : largest; /* with fmax gcc 12 fails to compile it for aarch64: an internal error */
+    }
     return largest;
 }
 

@@ -1,0 +1,17 @@
+/* Scenes of many blocks: those of the demo have one block, the cloth a few, and threads and orders of blocks are to matter. */
+#ifndef STEADFAST_TESTS_DETERMINISM_CROWDS_H
+#define STEADFAST_TESTS_DETERMINISM_CROWDS_H
+
+#include "scenes/scene.h"
+
+#ifdef STF_DOUBLE
+#define crowds crowds_f64
+#endif
+
+/* They are stepped this part of the ticks of the demo's scenes. */
+#define CROWD_SHARE 100
+
+/* NULL-terminated. */
+extern const scene *const crowds[];
+
+#endif
