@@ -124,6 +124,7 @@ help:
 	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
+	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in four minutes"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -251,6 +252,22 @@ $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
 	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+
+# ---- coverage ----------------------------------------------------------------------------------------------------------------
+
+# Not optimised, and what is written into its callers counts once: then a way in the source is a way in the object file.
+.PHONY: coverage coverage-run
+coverage: | need-gcov
+	@$(MAKE) --no-print-directory CC=gcc BUILD=build/coverage OPTIMISE=-O0 LDFLAGS=--coverage \
+	    CFLAGS='--coverage -Dalways_inline=unused' coverage-run
+
+coverage-run: $(TESTS)
+	@sh tests/coverage.sh $(BUILD) $(TESTS)
+
+.PHONY: need-gcov
+need-gcov: | $(DEPS_FIRST)
+	@command -v gcc >/dev/null && command -v gcov >/dev/null || \
+	    { echo "steadfast: coverage needs gcc and its gcov: type: make deps" >&2; exit 1; }
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 
