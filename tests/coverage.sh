@@ -29,7 +29,8 @@ function row(name, lines, lines_reached, ways, ways_reached) {
     sub(/^[^:]*:[^:]*: */, "")
     source[place] = $0
     if (field[1] ~ /-/) next
-    if (!(place in reached)) { reached[place] = 0; lines[file]++; last[file] = field[2] > last[file] ? field[2] + 0 : last[file] }
+    if (!(place in reached)) { reached[place] = 0; lines[file]++ }
+    if (field[2] + 0 > last[file]) last[file] = field[2] + 0
     if (field[1] + 0 > 0 && !reached[place]++) lines_reached[file]++
     next
 }
@@ -50,13 +51,14 @@ END {
             if ((place in reached) && !reached[place])
                 left = left sprintf("%s:%d: not reached: %s\n", file, n, source[place])
             else if (ways_reached_of[place] < ways_of[place])
-                left = left sprintf("%s:%d: %d of %d ways: %s\n", file, n, ways_reached_of[place], ways_of[place], source[place])
+                left = left sprintf("%s:%d: %d of %d ways: %s\n", file, n, ways_reached_of[place], ways_of[place],
+                                    source[place])
         }
     }
     row("all", all_lines, all_lines_reached, all_ways, all_ways_reached)
     printf "\n%s", left
     if (100 * all_lines_reached < lines_wanted * all_lines || 100 * all_ways_reached < ways_wanted * all_ways) {
-        print "steadfast: the tests have to reach " lines_wanted " % of the lines and " ways_wanted " % of the ways" > "/dev/stderr"
+        print "steadfast: tests have to reach " lines_wanted " % of lines, " ways_wanted " % of ways" > "/dev/stderr"
         exit 1
     }
 }'

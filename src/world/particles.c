@@ -277,6 +277,8 @@ stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *
         return STF_ERROR_NO_PREVIOUS;
     if (stride_bytes > 0 && stride_bytes < world->dimensions * sizeof(float))
         return STF_ERROR_STRIDE;
+    if (world->count > 0 && stride_bytes > SIZE_MAX / 2 / world->count)
+        return STF_ERROR_STRIDE;
 
     const size_t bytes = stride_bytes ? stride_bytes : world->dimensions * sizeof(float);
     const size_t stride = world->storage.stride;
