@@ -640,99 +640,6 @@ static void runs_are_timed_in_turn(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------------------------------- */
 
-static stf_result refuse(void *user, stf_world **world)
-{
-    (void)user, (void)world;
-    return STF_ERROR_MASS;
-}
-
-static stf_result refuse_in_double(void *user, struct stf_world_f64 **world)
-{
-    (void)user, (void)world;
-    return STF_ERROR_MASS;
-}
-
-static stf_result build_in_space(void *user, stf_world **world)
-{
-    const stf_particle p = {.inverse_mass = 1};
-    (void)user;
-
-    *world = make_world((stf_world_def){0});
-    assert_ok(stf_world_add(*world, &p, NULL));
-    return stf_world_add(*world, &p, NULL);
-}
-
-static void bad_references_are_refused(void **state)
-{
-    (void)state;
-    trade_scene scene = TRADE_FALL;
-    counting c = {0};
-    const stf_trade_reference_def good = {.build = trade_scene_build_f64, .user = &scene, .duration = 2};
-    stf_trade_reference_def def = good;
-    stf_trade_reference *const untouched = (stf_trade_reference *)&c, *reference = untouched;
-
-    assert_refused(stf_trade_reference_create(NULL, &reference), STF_ERROR_NULL);
-    assert_refused(stf_trade_reference_create(&def, NULL), STF_ERROR_NULL);
-    def.build = NULL;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_NULL);
-    def.build = refuse_in_double;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_MASS);
-    const double durations[] = {0, -1, (double)NAN, HUGE_VAL};
-    for (size_t i = 0; i < COUNT_OF(durations); i++) {
-        def = good;
-        def.duration = durations[i];
-        assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_STEP);
-    }
-    def = good;
-    def.allocator.allocate = counting_allocator(&c).allocate;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_DESCRIPTOR);
-    assert_ptr_equal(reference, untouched);
-    stf_trade_reference_destroy(NULL);
-}
-
-static void bad_questions_are_refused(void **state)
-{
-    (void)state;
-    trade_scene scene = TRADE_FALL, other = TRADE_PENDULUM;
-    counting c = {0};
-    const unsigned steps[] = {SAMPLES}, odd[] = {SAMPLES + 1}, none[] = {0};
-    const stf_integrator *const gap[] = {NULL};
-    stf_trade_reference *reference = make_reference(&scene, true);
-    const stf_trade_def good = {.build = trade_scene_build,
-                                .user = &scene,
-                                .reference = reference,
-                                .integrators = stf_integrators,
-                                .integrator_count = 1,
-                                .steps = steps,
-                                .steps_count = 1,
-                                .repeats = 1};
-    stf_trade_row row;
-
-#define REFUSED_WITH(change, error)                                                                                            \
-    do {                                                                                                                       \
-        stf_trade_def def = good;                                                                                              \
-        def.change;                                                                                                            \
-        assert_refused(stf_trade(&def, &row), error);                                                                          \
-    } while (0)
-
-    assert_refused(stf_trade(NULL, &row), STF_ERROR_NULL);
-    assert_refused(stf_trade(&good, NULL), STF_ERROR_NULL);
-    assert_refused(stf_trade_begin(&good, &row, NULL), STF_ERROR_NULL);
-    REFUSED_WITH(build = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(reference = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(integrators = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(integrators = gap, STF_ERROR_NULL);
-    REFUSED_WITH(steps = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(steps = none, STF_ERROR_STEP);
-    REFUSED_WITH(steps = odd, STF_ERROR_STEP);
-    REFUSED_WITH(repeat_seconds = -1, STF_ERROR_STEP);
-    REFUSED_WITH(user = &other, STF_ERROR_PARTICLE);
-    REFUSED_WITH(build = build_in_space, STF_ERROR_DIMENSIONS);
-    REFUSED_WITH(build = refuse, STF_ERROR_MASS);
-    REFUSED_WITH(allocator.release = counting_allocator(&c).release, STF_ERROR_DESCRIPTOR);
-    stf_trade_reference_destroy(reference);
-}
-
 /* Whichever allocation fails, the answer is MEMORY and nothing is left over. */
 static void without_memory_nothing_is_lost(void **state)
 {
@@ -789,8 +696,6 @@ int main(void)
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
-        cmocka_unit_test(bad_references_are_refused),
-        cmocka_unit_test(bad_questions_are_refused),
         cmocka_unit_test(without_memory_nothing_is_lost),
     };
 
