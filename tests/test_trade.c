@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "support/check.h"
-#include "support/memory.h"
 #include "support/trade_scene.h"
 
 #define INTEGRATORS 7
@@ -640,42 +639,6 @@ static void runs_are_timed_in_turn(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------------------------------- */
 
-/* Whichever allocation fails, the answer is MEMORY and nothing is left over. */
-static void without_memory_nothing_is_lost(void **state)
-{
-    (void)state;
-    trade_scene scene = TRADE_FALL;
-    const unsigned steps[] = {SAMPLES};
-    stf_trade_row row;
-
-    for (size_t fail_at = 1; fail_at <= 5; fail_at++) {
-        counting c = {.fail_at = fail_at};
-        const stf_trade_reference_def reference_def = {.build = trade_scene_build_f64,
-                                                       .user = &scene,
-                                                       .duration = 2,
-                                                       .samples = SAMPLES,
-                                                       .allocator = counting_allocator(&c)};
-        stf_trade_reference *reference = NULL;
-        stf_result result = stf_trade_reference_create(&reference_def, &reference);
-
-        if (!result)
-            result = stf_trade(&(stf_trade_def){.build = trade_scene_build,
-                                                .user = &scene,
-                                                .reference = reference,
-                                                .integrators = stf_integrators,
-                                                .integrator_count = 1,
-                                                .steps = steps,
-                                                .steps_count = 1,
-                                                .repeats = 1,
-                                                .allocator = counting_allocator(&c)},
-                               &row);
-        stf_trade_reference_destroy(reference);
-        assert_refused(result, fail_at <= 4 ? STF_ERROR_MEMORY : STF_OK); /* a reference, two paths, the repeats */
-        assert_int_equal(c.blocks, 0);
-        assert_int_equal(c.bytes, 0);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -696,7 +659,6 @@ int main(void)
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
-        cmocka_unit_test(without_memory_nothing_is_lost),
     };
 
     return cmocka_run_group_tests_name("trade, " REAL_NAME, tests, NULL, NULL);

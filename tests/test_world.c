@@ -125,83 +125,6 @@ static void steps_and_questions_allocate_nothing(void **state)
     stf_world_destroy(world);
 }
 
-/* Calls that need memory, each on a busy world. */
-static stf_result grow(stf_world *world) { return stf_world_reserve(world, 5000); }
-
-static stf_result add_many(stf_world *world)
-{
-    static const stf_particle particles[20];
-    return stf_world_add_many(world, particles, COUNT_OF(particles), NULL);
-}
-
-static stf_result add_to_full(stf_world *world)
-{
-    stf_result result = STF_OK;
-    for (int i = 0; i < 13 && !result; i++) /* 16 fill the first block */
-        result = stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
-    return result ? result : stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
-}
-
-static stf_result use_rk4(stf_world *world) { return stf_world_set_integrator(world, &stf_rk4); }
-
-static stf_result add_attractor(stf_world *world)
-{
-    return stf_world_add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1}, 1, NULL);
-}
-
-static stf_result change_springs(stf_world *world)
-{
-    const stf_spring springs[] = {{0, 1, 1, 0, 0}, {1, 2, 1, 0, 0}};
-    return stf_world_set_force(world, 1, springs, 2);
-}
-
-static stf_result add_nine_forces(stf_world *world)
-{
-    stf_result result = STF_OK;
-    for (int i = 0; i < 9 && !result; i++)
-        result = stf_world_add_force(world, &time_force, NULL, 0, NULL);
-    return result;
-}
-
-static stf_result tie(stf_world *world)
-{
-    stf_result result = stf_world_remove_force(world, 1);
-    return result ? result : stf_world_add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){1, 1}, 1, NULL);
-}
-
-static void without_memory_calls_fail_and_change_nothing_they_did_not_do(void **state)
-{
-    (void)state;
-    static const struct {
-        stf_result (*call)(stf_world *);
-        bool one_step; /* does nothing else before what needs memory */
-    } calls[] = {{grow, true}, {add_many, true}, {add_to_full, false}, {use_rk4, true}, {add_attractor, true},
-                 {change_springs, true}, {add_nine_forces, false}, {tie, false}};
-
-    for (size_t k = 0; k < COUNT_OF(calls); k++)
-        for (size_t n = 1;; n++) {
-            counting c = {0};
-            const stf_allocator allocator = counting_allocator(&c);
-            stf_world *world = busy_world(&allocator);
-            const uint64_t before = hash_of(world);
-
-            c.fail_at = c.calls + n;
-            const stf_result result = calls[k].call(world);
-            const bool failed = c.calls >= c.fail_at;
-            assert_refused(result, failed ? STF_ERROR_MEMORY : STF_OK);
-            if (failed && calls[k].one_step)
-                assert_true(hash_of(world) == before);
-            assert_ok(stf_world_step(world, 3));
-            stf_world_destroy(world);
-            assert_int_equal(c.blocks, 0);
-            assert_int_equal(c.bytes, 0);
-            if (!failed) {
-                assert_true(n > 1); /* at least one allocation was there to fail */
-                break;
-            }
-        }
-}
-
 /* Hands out another allocator's memory until it is told to refuse; then it notes the least that it was asked for. */
 typedef struct shortage {
     stf_allocator lender;
@@ -250,20 +173,6 @@ static void no_room_is_asked_for_whose_bytes_wrap_round(void **state)
     assert_true(s.least > SIZE_MAX / 2);
     stf_world_destroy(world);
     assert_int_equal(c.blocks, 0);
-}
-
-static void without_memory_no_world_is_made(void **state)
-{
-    (void)state;
-    for (size_t n = 1; n <= 2; n++) {
-        counting c = {.fail_at = n};
-        const stf_world_def def = {.capacity = 1000, .allocator = counting_allocator(&c)};
-        stf_world *world = NULL;
-
-        assert_refused(stf_world_create(&def, &world), STF_ERROR_MEMORY);
-        assert_null(world);
-        assert_int_equal(c.blocks, 0);
-    }
 }
 
 static void time_is_ticks_times_step(void **state)
@@ -1132,9 +1041,7 @@ int main(void)
         cmocka_unit_test(every_result_has_its_own_text),
         cmocka_unit_test(all_memory_comes_from_the_allocator_and_goes_back),
         cmocka_unit_test(steps_and_questions_allocate_nothing),
-        cmocka_unit_test(without_memory_calls_fail_and_change_nothing_they_did_not_do),
         cmocka_unit_test(no_room_is_asked_for_whose_bytes_wrap_round),
-        cmocka_unit_test(without_memory_no_world_is_made),
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
         cmocka_unit_test(forces_see_the_time_that_the_world_says_after_a_change_of_step),
