@@ -762,6 +762,16 @@ static void time_is_a_product_and_never_a_sum(void **state)
     }
 }
 
+static void single_steps_are_no_more_than_can_be_counted(void **state)
+{
+    (void)state;
+    stf_clock clock = make_clock((stf_clock_def){.step = 1});
+
+    clock.single_steps = UINT_MAX;
+    assert_ok(stf_clock_single_step(&clock));
+    assert_true(clock.single_steps == UINT_MAX);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -802,6 +812,7 @@ int main(void)
         cmocka_unit_test(a_step_shorter_than_the_remainder_keeps_alpha_below_1),
         cmocka_unit_test(ticks_pass_32_bits),
         cmocka_unit_test(time_is_a_product_and_never_a_sum),
+        cmocka_unit_test(single_steps_are_no_more_than_can_be_counted),
     };
 
     return cmocka_run_group_tests_name("clock, " REAL_NAME, tests, NULL, NULL);

@@ -1,6 +1,5 @@
 /* The instrument measures what it says, knows what it does not know, and its picks hold. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "support/check.h"
@@ -639,6 +638,79 @@ static void runs_are_timed_in_turn(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------------------------------- */
 
+static void where_nothing_is_nothing_is_wrong(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_EMPTY;
+    const unsigned steps[] = {SAMPLES};
+    stf_trade_row rows[INTEGRATORS];
+
+    for (int exact = 0; exact < 2; exact++) {
+        stf_trade_reference *reference = make_reference(&scene, exact);
+        const stf_trade_accuracy accuracy = stf_trade_reference_accuracy(reference);
+
+        assert_true(accuracy.exact == (exact == 1) && accuracy.error == 0 && accuracy.reach == 0);
+        measure(&scene, reference, steps, 1, rows);
+        for (size_t i = 0; i < INTEGRATORS; i++)
+            assert_true(rows[i].finite && rows[i].bounded && rows[i].largest_error == 0 && rows[i].momentum_error == 0);
+        measure(&scene, reference, steps, 0, rows); /* and of no row nothing is written */
+        stf_trade_reference_destroy(reference);
+    }
+}
+
+static bool exactly_lost(void *user, size_t particle, double time, double position[3], double velocity[3])
+{
+    trade_scene_exact_fall(user, particle, time, position, velocity);
+    position[0] = time > 1 ? (double)NAN : position[0];
+    return true;
+}
+
+static void an_exact_solution_that_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_FALL;
+    stf_trade_reference *reference = NULL;
+    const stf_trade_reference_def def = {
+        .build = trade_scene_build_f64, .exact = exactly_lost, .user = &scene, .duration = 2, .samples = SAMPLES};
+
+    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_NOT_FINITE);
+    assert_null(reference);
+}
+
+static unsigned looks; /* at the timer */
+
+/* By this one all that is measured takes longer than a look at it. */
+static double seconds_that_grow(void *user)
+{
+    static double now;
+    (void)user;
+    return now += ++looks;
+}
+
+static void zeros_of_a_def_are_the_documented_numbers(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_FALL;
+    const unsigned steps[] = {256};
+    stf_trade_reference *reference;
+    stf_trade_row row;
+
+    assert_ok(stf_trade_reference_create(&(stf_trade_reference_def){.build = trade_scene_build_f64, .user = &scene,
+                                                                    .exact = trade_scene_exact_fall, .duration = 2},
+                                         &reference));
+    stf_trade_def def = {.build = trade_scene_build, .user = &scene, .reference = reference, .integrators = stf_integrators,
+                         .integrator_count = 1, .steps = steps, .steps_count = 1, .repeat_seconds = 1e-300,
+                         .seconds = seconds_that_grow};
+    looks = 0;
+    assert_ok(stf_trade(&def, &row)); /* 256 steps are no STF_ERROR_STEP: so many samples there are */
+    const unsigned by_default = looks;
+    def.repeats = 25;
+    looks = 0;
+    assert_ok(stf_trade(&def, &row));
+    assert_int_equal(looks, by_default);
+    stf_trade_reference_destroy(reference);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -659,6 +731,9 @@ int main(void)
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
+        cmocka_unit_test(where_nothing_is_nothing_is_wrong),
+        cmocka_unit_test(an_exact_solution_that_is_not_finite_is_refused),
+        cmocka_unit_test(zeros_of_a_def_are_the_documented_numbers),
     };
 
     return cmocka_run_group_tests_name("trade, " REAL_NAME, tests, NULL, NULL);

@@ -1034,6 +1034,70 @@ static void exact_solutions_are_consistent(void **state)
     }
 }
 
+static void run_in_turn(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    (void)user;
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+}
+
+static void describe_tells_how_a_world_steps(void **state)
+{
+    (void)state;
+    const stf_integrator plain = {.name = "plain", .step = stf_rk4.step, .work_arrays = stf_rk4.work_arrays};
+    const struct {
+        stf_world_def def;
+        const stf_force *force;
+        const char *expected;
+    } cases[] = {
+        {{.parallel = {.run = run_in_turn, .tasks = 3}}, NULL, "a step in up to 3 parts"},
+        {{.step = 1}, NULL, "free flight"},
+        {{.integrator = &plain}, NULL, "block by block"},
+        {{.step = 1}, &time_force, "field, 0 records, of t"},
+        {{.step = 1}, &idle_link, "links tie particles together"},
+    };
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        stf_world *world = make_world(cases[i].def);
+        char text[2048];
+
+        if (cases[i].force)
+            add_force(world, cases[i].force, NULL);
+        stf_world_describe(world, text, sizeof text);
+        assert_non_null(strstr(text, cases[i].expected));
+        stf_world_destroy(world);
+    }
+}
+
+static void an_empty_lot_needs_no_particles(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+    size_t first = 77;
+
+    assert_ok(stf_world_add_many(world, NULL, 0, &first));
+    assert_true(first == 3 && hash_of(world) == before);
+    stf_world_destroy(world);
+}
+
+static size_t too_many(size_t record_count) { return record_count > 1 ? SIZE_MAX : 0; }
+
+static void a_force_says_how_many_records_are_too_many(void **state)
+{
+    (void)state;
+    const stf_force lonely = {.name = "lonely", .record_size = sizeof(stf_linear_drag), .apply = stf_force_quadratic_drag.apply,
+                              .arranged_size = too_many};
+    const stf_quadratic_drag records[2] = {{1}, {2}};
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+
+    assert_refused(stf_world_add_force(world, &lonely, records, 2, NULL), STF_ERROR_MEMORY);
+    assert_true(hash_of(world) == before);
+    assert_ok(stf_world_add_force(world, &lonely, records, 1, NULL));
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -1074,6 +1138,9 @@ int main(void)
         cmocka_unit_test(clear_empties_and_keeps_the_rest),
         cmocka_unit_test(every_scene_is_made_and_stays_finite_with_its_own_integrator),
         cmocka_unit_test(exact_solutions_are_consistent),
+        cmocka_unit_test(describe_tells_how_a_world_steps),
+        cmocka_unit_test(an_empty_lot_needs_no_particles),
+        cmocka_unit_test(a_force_says_how_many_records_are_too_many),
     };
 
     return cmocka_run_group_tests_name("world, " REAL_NAME, tests, NULL, NULL);

@@ -6,9 +6,8 @@ stf_result stf_world_check_step(double step, unsigned substeps)
         return STF_ERROR_SUBSTEPS;
 
     const double integrator_step = step / substeps;
-    const bool is_real = integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX;
 
-    return is_real && isfinite(step) ? STF_OK : STF_ERROR_STEP;
+    return integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX ? STF_OK : STF_ERROR_STEP;
 }
 
 static bool is_integrator(const stf_integrator *integrator)

@@ -58,7 +58,7 @@ bool stf_force_has_room(const stf_added_force *added, size_t record_count)
 {
     const size_t bytes = record_count > 0 ? bytes_of(added->force, record_count) : 0;
 
-    return record_count == 0 || (bytes > 0 && bytes <= added->bytes);
+    return bytes <= added->bytes;
 }
 
 stf_result stf_force_allocate_records(const stf_world *world, stf_added_force *added, size_t record_count)

@@ -142,7 +142,7 @@ static bool same_place(stf_vector a, stf_vector b) { return a.x == b.x && a.y ==
 static stf_result grow(stf_world *world, size_t needed)
 {
     const size_t capacity = world->storage.capacity;
-    const bool outgrown = needed > capacity && world->count > 0 && capacity <= SIZE_MAX / GROWTH;
+    const bool outgrown = needed > capacity && world->count > 0;
 
     return stf_storage_require(world, outgrown && needed < GROWTH * capacity ? GROWTH * capacity : needed, world->integrator,
                                false);
