@@ -55,7 +55,7 @@ typedef struct kind {
 /* Of a world of two dimensions that keeps previous positions and radii, and how the others differ. */
 static stf_world *world, *bare /* keeps none, in three */, *exploded, *unsavable, *hasty /* has the least step */;
 
-static unsigned char foreign[64], altered[4096], newer[4096], of_bare[8192];
+static unsigned char foreign[8192], altered[4096], newer[4096], of_bare[8192];
 static const void *const at_foreign = foreign, *const at_altered = altered, *const at_newer = newer;
 static const void *const at_of_bare = of_bare;
 
