@@ -133,6 +133,7 @@ help:
 	@echo "make determinism     the same bits with every compiler, instruction set, number of threads and machine here; long"
 	@echo "make deps-cross      install the compilers and emulators of other machines for it"
 	@echo "make soak            an hour of simulated play with each integrator: no drift of time, no growth of memory; a minute"
+	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in four minutes"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -329,6 +330,22 @@ SOAK_SECONDS = 3600
 soak: $(BUILD)/tests/test_soak-f32 $(BUILD)/tests/test_soak-f64
 	$(BUILD)/tests/test_soak-f32 $(SOAK_SECONDS)
 	$(BUILD)/tests/test_soak-f64 $(SOAK_SECONDS)
+
+# ---- coverage ----------------------------------------------------------------------------------------------------------------
+
+# Not optimised, and what is written into its callers counts once: then a way in the source is a way in the object file.
+.PHONY: coverage coverage-run
+coverage: | need-gcov
+	@$(MAKE) --no-print-directory CC=gcc BUILD=build/coverage OPTIMISE=-O0 LDFLAGS=--coverage \
+	    CFLAGS='--coverage -Dalways_inline=unused' coverage-run
+
+coverage-run: $(TESTS)
+	@sh tests/coverage.sh $(BUILD) $(TESTS)
+
+.PHONY: need-gcov
+need-gcov: | $(DEPS_FIRST)
+	@command -v gcc >/dev/null && command -v gcov >/dev/null || \
+	    { echo "steadfast: coverage needs gcc and its gcov: type: make deps" >&2; exit 1; }
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@ static bool has_avx512(void)
 }
 #endif
 
-/* The sets that were built, the widest first. */
+/* The sets that were built, the widest first; the last runs everywhere. */
 static const struct {
     const stf_kernels *kernels;
     bool (*runs_here)(void);
@@ -39,10 +39,11 @@ const stf_kernels *stf_kernels_choose(void)
     for (size_t i = 0; wanted && i < SET_COUNT; i++)
         if (strcmp(wanted, sets[i].kernels->name) == 0 && sets[i].runs_here())
             return sets[i].kernels;
-    for (size_t i = 0; i < SET_COUNT; i++)
-        if (sets[i].runs_here())
-            return sets[i].kernels;
-    return &stf_kernels_baseline;
+
+    size_t widest = 0;
+    while (!sets[widest].runs_here())
+        widest++;
+    return sets[widest].kernels;
 }
 
 const stf_integrator *stf_kernels_integrator(const stf_kernels *kernels, const stf_integrator *integrator)

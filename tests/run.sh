@@ -9,6 +9,7 @@ run() {
 }
 
 for test in "$@"; do run "$test"; done
+run sh tests/bad_input/check.sh "$build"
 run sh tests/consumer/check.sh "$build"
 for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
 run sh tests/determinism/run.sh test "$build"

@@ -5,6 +5,7 @@
 #include "scenes/scene.h"
 #include "support/check.h"
 #include "support/memory.h"
+#include "support/problem.h"
 #include "support/saved.h"
 
 /* A snapshot in memory of exactly its size, and what the world was then. */
@@ -233,6 +234,11 @@ static void what_is_no_snapshot_of_it_is_refused(void **state)
     assert_ok(stf_world_set_force(small, 1, springs, 2));
     assert_ok(stf_world_restore(small, m.bytes, m.size));
     assert_true(saved_is(m.then, small));
+    stf_world *another = make_world((stf_world_def){.dimensions = 2, .keep_previous = true, .keep_radius = true,
+                                                    .integrator = &stf_velocity_verlet, .capacity = 100});
+    add_force(another, &stf_force_linear_drag, &(stf_linear_drag){1});
+    assert_not_restored(another, &m, m.size); /* of the same id, another force */
+    stf_world_destroy(another);
     assert_ok(stf_world_remove_force(world, 1));
     assert_not_restored(world, &m, m.size);
     add_force(world, &stf_force_springs, NULL);
@@ -248,6 +254,21 @@ static void what_is_no_snapshot_of_it_is_refused(void **state)
     stf_world_destroy(world);
 }
 
+static void a_force_without_records_is_restored(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &time_force, NULL);
+    moment m = snapshot_of(world);
+    assert_ok(stf_world_step(world, 3));
+    assert_ok(stf_world_restore(world, m.bytes, m.size));
+    assert_true(saved_is(m.then, world));
+    forget(&m);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -257,6 +278,7 @@ int main(void)
         cmocka_unit_test(another_integrator_is_undone),
         cmocka_unit_test(forces_that_were_added_since_go),
         cmocka_unit_test(what_is_no_snapshot_of_it_is_refused),
+        cmocka_unit_test(a_force_without_records_is_restored),
     };
 
     return cmocka_run_group_tests_name("rollback, " REAL_NAME, tests, NULL, NULL);

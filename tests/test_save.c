@@ -7,6 +7,7 @@
 #include "scenes/scene.h"
 #include "support/check.h"
 #include "support/memory.h"
+#include "support/problem.h"
 #include "support/saved.h"
 
 /* Of busy_world after GOLDEN_TICKS, with velocity Verlet; the same on every machine. */
@@ -359,7 +360,7 @@ static void lies_with_a_fitting_checksum_do_no_harm(void **state)
                     refused++;
                 } else {
                     accepted++;
-                    if (stf_world_substeps(into) < 1000) /* else it would take hours, as it says */
+                    if (stf_world_substeps(into) < 1000) /* up to STF_SUBSTEPS_MAX it may say, which takes a while */
                         assert_ok(stf_world_step(into, 2));
                     assert_false(stf_world_count(into) > 100);
                     assert_ok(stf_world_load(into, before.bytes, before.size, NULL));
@@ -680,6 +681,64 @@ static void without_memory_nothing_changes(void **state)
     stf_world_destroy(world);
 }
 
+/* As if it had been saved so: the length says that it is whole, and the checksum fits. */
+static void every_cut_with_a_fitting_checksum_is_refused(void **state)
+{
+    (void)state;
+    stf_world *world = world_after(&stf_position_verlet, 3), *into = fresh_world(&stf_position_verlet);
+    saved s = save_of(world), before = save_of(into);
+
+    for (size_t size = AT_REAL + 4; size < s.size; size++) {
+        saved cut = copy_of(s);
+
+        cut.size = size;
+        put(cut.bytes + AT_BYTES, size, 8);
+        sign(cut);
+        assert_true(refusal(into, before, cut.bytes, cut.size) != STF_OK);
+        saved_free(&cut);
+    }
+    saved_free(&before);
+    saved_free(&s);
+    stf_world_destroy(into);
+    stf_world_destroy(world);
+}
+
+static void a_force_of_no_records_has_none_in_a_save(void **state)
+{
+    (void)state;
+    static const stf_force pointers = {.name = "pointers", .record_size = sizeof(int *), .apply = blow, .fields = STF_NOT_SAVED};
+    const stf_force *const forces[] = {&idle_link, &pointers};
+
+    for (size_t i = 0; i < COUNT_OF(forces); i++) {
+        stf_world *world = make_world((stf_world_def){.dimensions = 1});
+
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+        add_force(world, forces[i], NULL);
+        saved s = save_of(world), told = copy_of(s);
+        put(told.bytes + s.size - 4 - 3 * sizeof(stf_real) - 8, 1, 8); /* before position, velocity, inverse mass and checksum */
+        sign(told);
+        assert_refused(refusal(world, s, told.bytes, told.size), STF_ERROR_ALTERED);
+        assert_ok(refusal(world, s, s.bytes, s.size));
+        saved_free(&told);
+        saved_free(&s);
+        stf_world_destroy(world);
+    }
+}
+
+static void a_world_without_forces_is_saved_and_loaded(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1}), *other = make_world((stf_world_def){.step = 2});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {1, 2, 3}, .inverse_mass = 1}, NULL));
+    saved s = save_of(world);
+    assert_ok(stf_world_load(other, s.bytes, s.size, NULL));
+    assert_true(saved_is(s, other));
+    saved_free(&s);
+    stf_world_destroy(other);
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -700,6 +759,9 @@ int main(void)
         cmocka_unit_test(what_can_not_be_saved_is_refused),
         cmocka_unit_test(fields_have_to_make_up_the_record),
         cmocka_unit_test(without_memory_nothing_changes),
+        cmocka_unit_test(every_cut_with_a_fitting_checksum_is_refused),
+        cmocka_unit_test(a_force_of_no_records_has_none_in_a_save),
+        cmocka_unit_test(a_world_without_forces_is_saved_and_loaded),
     };
 
     return cmocka_run_group_tests_name("save, " REAL_NAME, tests, NULL, NULL);

@@ -679,22 +679,72 @@ static void a_call_gives_back_all_memory_and_survives_a_lack_of_it(void **state)
     stf_world_destroy(world);
 }
 
-static void bad_input_is_refused(void **state)
+static void push_to_infinity(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    const stf_real *spared = records;
+    (void)record_count, (void)time;
+
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->position[i] != *spared)
+            particles->force[i] += (stf_real)INFINITY;
+}
+
+/* Where it stands the first finds an infinite acceleration, and the second none, but all around. */
+static void infinite_forces_are_refused(void **state)
 {
     (void)state;
-    stf_world *world = oscillator(&stf_rk4, 1e-3);
-    stf_stability found = {.limit = 42};
-    const stf_stability_def half = {.allocator = {.allocate = counting_allocator(NULL).allocate}};
+    static const stf_force wall = {.name = "wall", .record_size = sizeof(stf_real), .apply = push_to_infinity};
+    const stf_real elsewhere[] = {1, 0};
 
-    assert_refused(stf_stability_measure(NULL, NULL, &found), STF_ERROR_NULL);
-    assert_refused(stf_stability_measure(world, NULL, NULL), STF_ERROR_NULL);
-    assert_refused(stf_stability_measure(world, &half, &found), STF_ERROR_DESCRIPTOR);
-    assert_ok(stf_world_set_integrator(world, &stf_explicit_euler));
-    assert_ok(stf_world_set_step(world, 1e9));
-    assert_ok(stf_world_step(world, 100));
-    assert_true(stf_world_find_non_finite(world, NULL));
-    assert_refused(stf_stability_measure(world, NULL, &found), STF_ERROR_NOT_FINITE);
-    assert_true(found.limit == 42);
+    for (size_t i = 0; i < COUNT_OF(elsewhere); i++) {
+        stf_world *world = world_of(1, &stf_rk4, 1e-3);
+        stf_stability found = {.limit = 42};
+
+        assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+        add_force(world, &wall, &elsewhere[i]);
+        assert_refused(stf_stability_measure(world, NULL, &found), STF_ERROR_NOT_FINITE);
+        assert_true(found.limit == 42);
+        stf_world_destroy(world);
+    }
+}
+
+static void come_to_rest(stf_system *s, stf_real dt)
+{
+    (void)dt;
+    for (size_t i = 0; i < s->length; i++)
+        s->position[i] = s->velocity[i] = 0;
+}
+
+static void get_lost(stf_system *s, stf_real dt)
+{
+    (void)dt;
+    for (size_t i = 0; i < s->length; i++)
+        s->position[i] = (stf_real)INFINITY;
+}
+
+static void an_integrator_that_forgets_all_is_steady_and_one_that_explodes_never(void **state)
+{
+    (void)state;
+    static const stf_integrator rest = {.name = "rest", .step = come_to_rest}, lost = {.name = "lost", .step = get_lost};
+    stf_world *world = oscillator(&rest, 1e-3);
+
+    assert_true(stability_of(world).limit == (double)INFINITY);
+    assert_ok(stf_world_set_integrator(world, &lost));
+    assert_true(stability_of(world).limit == 0 && stability_of(world).substeps == 0);
+    stf_world_destroy(world);
+}
+
+static void a_tick_that_takes_too_many_substeps_has_no_advice(void **state)
+{
+    (void)state;
+    const double limit = 2 / OMEGA;
+    stf_world *world = oscillator(&stf_velocity_verlet, STF_STABILITY_SAFETY * limit * STF_SUBSTEPS_MAX / 2);
+    const unsigned half = stability_of(world).substeps;
+
+    assert_in_range(half, STF_SUBSTEPS_MAX / 2.1, STF_SUBSTEPS_MAX / 1.9);
+    assert_ok(stf_world_set_substeps(world, half));
+    assert_ok(stf_world_set_step(world, 3 * stf_world_step_size(world)));
+    assert_int_equal(stability_of(world).substeps, 0);
     stf_world_destroy(world);
 }
 
@@ -716,7 +766,9 @@ int main(void)
         cmocka_unit_test(advice_holds_in_a_net_of_unlike_dampers),
         cmocka_unit_test(a_call_changes_nothing_and_takes_the_accelerations_it_says),
         cmocka_unit_test(a_call_gives_back_all_memory_and_survives_a_lack_of_it),
-        cmocka_unit_test(bad_input_is_refused),
+        cmocka_unit_test(infinite_forces_are_refused),
+        cmocka_unit_test(an_integrator_that_forgets_all_is_steady_and_one_that_explodes_never),
+        cmocka_unit_test(a_tick_that_takes_too_many_substeps_has_no_advice),
     };
 
     return cmocka_run_group_tests_name("stability, " REAL_NAME, tests, NULL, NULL);

@@ -1,10 +1,8 @@
 /* The instrument measures what it says, knows what it does not know, and its picks hold. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "support/check.h"
-#include "support/memory.h"
 #include "support/trade_scene.h"
 
 #define INTEGRATORS 7
@@ -640,133 +638,77 @@ static void runs_are_timed_in_turn(void **state)
 
 /* ---- refusals -------------------------------------------------------------------------------------------------------- */
 
-static stf_result refuse(void *user, stf_world **world)
-{
-    (void)user, (void)world;
-    return STF_ERROR_MASS;
-}
-
-static stf_result refuse_in_double(void *user, struct stf_world_f64 **world)
-{
-    (void)user, (void)world;
-    return STF_ERROR_MASS;
-}
-
-static stf_result build_in_space(void *user, stf_world **world)
-{
-    const stf_particle p = {.inverse_mass = 1};
-    (void)user;
-
-    *world = make_world((stf_world_def){0});
-    assert_ok(stf_world_add(*world, &p, NULL));
-    return stf_world_add(*world, &p, NULL);
-}
-
-static void bad_references_are_refused(void **state)
+static void where_nothing_is_nothing_is_wrong(void **state)
 {
     (void)state;
-    trade_scene scene = TRADE_FALL;
-    counting c = {0};
-    const stf_trade_reference_def good = {.build = trade_scene_build_f64, .user = &scene, .duration = 2};
-    stf_trade_reference_def def = good;
-    stf_trade_reference *const untouched = (stf_trade_reference *)&c, *reference = untouched;
-
-    assert_refused(stf_trade_reference_create(NULL, &reference), STF_ERROR_NULL);
-    assert_refused(stf_trade_reference_create(&def, NULL), STF_ERROR_NULL);
-    def.build = NULL;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_NULL);
-    def.build = refuse_in_double;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_MASS);
-    const double durations[] = {0, -1, (double)NAN, HUGE_VAL};
-    for (size_t i = 0; i < COUNT_OF(durations); i++) {
-        def = good;
-        def.duration = durations[i];
-        assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_STEP);
-    }
-    def = good;
-    def.allocator.allocate = counting_allocator(&c).allocate;
-    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_DESCRIPTOR);
-    assert_ptr_equal(reference, untouched);
-    stf_trade_reference_destroy(NULL);
-}
-
-static void bad_questions_are_refused(void **state)
-{
-    (void)state;
-    trade_scene scene = TRADE_FALL, other = TRADE_PENDULUM;
-    counting c = {0};
-    const unsigned steps[] = {SAMPLES}, odd[] = {SAMPLES + 1}, none[] = {0};
-    const stf_integrator *const gap[] = {NULL};
-    stf_trade_reference *reference = make_reference(&scene, true);
-    const stf_trade_def good = {.build = trade_scene_build,
-                                .user = &scene,
-                                .reference = reference,
-                                .integrators = stf_integrators,
-                                .integrator_count = 1,
-                                .steps = steps,
-                                .steps_count = 1,
-                                .repeats = 1};
-    stf_trade_row row;
-
-#define REFUSED_WITH(change, error)                                                                                            \
-    do {                                                                                                                       \
-        stf_trade_def def = good;                                                                                              \
-        def.change;                                                                                                            \
-        assert_refused(stf_trade(&def, &row), error);                                                                          \
-    } while (0)
-
-    assert_refused(stf_trade(NULL, &row), STF_ERROR_NULL);
-    assert_refused(stf_trade(&good, NULL), STF_ERROR_NULL);
-    assert_refused(stf_trade_begin(&good, &row, NULL), STF_ERROR_NULL);
-    REFUSED_WITH(build = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(reference = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(integrators = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(integrators = gap, STF_ERROR_NULL);
-    REFUSED_WITH(steps = NULL, STF_ERROR_NULL);
-    REFUSED_WITH(steps = none, STF_ERROR_STEP);
-    REFUSED_WITH(steps = odd, STF_ERROR_STEP);
-    REFUSED_WITH(repeat_seconds = -1, STF_ERROR_STEP);
-    REFUSED_WITH(user = &other, STF_ERROR_PARTICLE);
-    REFUSED_WITH(build = build_in_space, STF_ERROR_DIMENSIONS);
-    REFUSED_WITH(build = refuse, STF_ERROR_MASS);
-    REFUSED_WITH(allocator.release = counting_allocator(&c).release, STF_ERROR_DESCRIPTOR);
-    stf_trade_reference_destroy(reference);
-}
-
-/* Whichever allocation fails, the answer is MEMORY and nothing is left over. */
-static void without_memory_nothing_is_lost(void **state)
-{
-    (void)state;
-    trade_scene scene = TRADE_FALL;
+    trade_scene scene = TRADE_EMPTY;
     const unsigned steps[] = {SAMPLES};
+    stf_trade_row rows[INTEGRATORS];
+
+    for (int exact = 0; exact < 2; exact++) {
+        stf_trade_reference *reference = make_reference(&scene, exact);
+        const stf_trade_accuracy accuracy = stf_trade_reference_accuracy(reference);
+
+        assert_true(accuracy.exact == (exact == 1) && accuracy.error == 0 && accuracy.reach == 0);
+        measure(&scene, reference, steps, 1, rows);
+        for (size_t i = 0; i < INTEGRATORS; i++)
+            assert_true(rows[i].finite && rows[i].bounded && rows[i].largest_error == 0 && rows[i].momentum_error == 0);
+        measure(&scene, reference, steps, 0, rows); /* and of no row nothing is written */
+        stf_trade_reference_destroy(reference);
+    }
+}
+
+static bool exactly_lost(void *user, size_t particle, double time, double position[3], double velocity[3])
+{
+    trade_scene_exact_fall(user, particle, time, position, velocity);
+    position[0] = time > 1 ? (double)NAN : position[0];
+    return true;
+}
+
+static void an_exact_solution_that_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_FALL;
+    stf_trade_reference *reference = NULL;
+    const stf_trade_reference_def def = {
+        .build = trade_scene_build_f64, .exact = exactly_lost, .user = &scene, .duration = 2, .samples = SAMPLES};
+
+    assert_refused(stf_trade_reference_create(&def, &reference), STF_ERROR_NOT_FINITE);
+    assert_null(reference);
+}
+
+static unsigned looks; /* at the timer */
+
+/* By this one all that is measured takes longer than a look at it. */
+static double seconds_that_grow(void *user)
+{
+    static double now;
+    (void)user;
+    return now += ++looks;
+}
+
+static void zeros_of_a_def_are_the_documented_numbers(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_FALL;
+    const unsigned steps[] = {256};
+    stf_trade_reference *reference;
     stf_trade_row row;
 
-    for (size_t fail_at = 1; fail_at <= 5; fail_at++) {
-        counting c = {.fail_at = fail_at};
-        const stf_trade_reference_def reference_def = {.build = trade_scene_build_f64,
-                                                       .user = &scene,
-                                                       .duration = 2,
-                                                       .samples = SAMPLES,
-                                                       .allocator = counting_allocator(&c)};
-        stf_trade_reference *reference = NULL;
-        stf_result result = stf_trade_reference_create(&reference_def, &reference);
-
-        if (!result)
-            result = stf_trade(&(stf_trade_def){.build = trade_scene_build,
-                                                .user = &scene,
-                                                .reference = reference,
-                                                .integrators = stf_integrators,
-                                                .integrator_count = 1,
-                                                .steps = steps,
-                                                .steps_count = 1,
-                                                .repeats = 1,
-                                                .allocator = counting_allocator(&c)},
-                               &row);
-        stf_trade_reference_destroy(reference);
-        assert_refused(result, fail_at <= 4 ? STF_ERROR_MEMORY : STF_OK); /* a reference, two paths, the repeats */
-        assert_int_equal(c.blocks, 0);
-        assert_int_equal(c.bytes, 0);
-    }
+    assert_ok(stf_trade_reference_create(&(stf_trade_reference_def){.build = trade_scene_build_f64, .user = &scene,
+                                                                    .exact = trade_scene_exact_fall, .duration = 2},
+                                         &reference));
+    stf_trade_def def = {.build = trade_scene_build, .user = &scene, .reference = reference, .integrators = stf_integrators,
+                         .integrator_count = 1, .steps = steps, .steps_count = 1, .repeat_seconds = 1e-300,
+                         .seconds = seconds_that_grow};
+    looks = 0;
+    assert_ok(stf_trade(&def, &row)); /* 256 steps are no STF_ERROR_STEP: so many samples there are */
+    const unsigned by_default = looks;
+    def.repeats = 25;
+    looks = 0;
+    assert_ok(stf_trade(&def, &row));
+    assert_int_equal(looks, by_default);
+    stf_trade_reference_destroy(reference);
 }
 
 int main(void)
@@ -789,9 +731,9 @@ int main(void)
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
-        cmocka_unit_test(bad_references_are_refused),
-        cmocka_unit_test(bad_questions_are_refused),
-        cmocka_unit_test(without_memory_nothing_is_lost),
+        cmocka_unit_test(where_nothing_is_nothing_is_wrong),
+        cmocka_unit_test(an_exact_solution_that_is_not_finite_is_refused),
+        cmocka_unit_test(zeros_of_a_def_are_the_documented_numbers),
     };
 
     return cmocka_run_group_tests_name("trade, " REAL_NAME, tests, NULL, NULL);

@@ -10,8 +10,6 @@
 #include "support/memory.h"
 #include "support/problem.h"
 
-static const stf_real not_a_number = (stf_real)NAN, infinite = (stf_real)INFINITY;
-
 /* A world with some of everything: particles, both kinds of springs, gravity, drag; half way through a run. */
 static stf_world *busy_world(const stf_allocator *allocator)
 {
@@ -35,153 +33,6 @@ static stf_world *busy_world(const stf_allocator *allocator)
     add_force(world, &stf_force_linear_drag, &drag);
     assert_ok(stf_world_step(world, 10));
     return world;
-}
-
-static void bad_defs_are_refused(void **state)
-{
-    (void)state;
-    static const stf_integrator nameless = {.step = NULL, .name = "no step"};
-    const stf_integrator greedy = {.name = "greedy", .step = stf_rk4.step, .work_arrays = STF_WORK_ARRAYS_MAX + 1};
-    const stf_integrator mindful = {.name = "mindful", .step = stf_rk4.step, .history_arrays = STF_HISTORY_ARRAYS_MAX + 1};
-    const stf_integrator negative = {.name = "negative", .step = stf_rk4.step, .work_arrays = -1};
-    const struct {
-        stf_world_def def;
-        stf_result expected;
-    } cases[] = {
-        {{.dimensions = 4}, STF_ERROR_DIMENSIONS},
-        {{.step = -1}, STF_ERROR_STEP},
-        {{.step = (double)NAN}, STF_ERROR_STEP},
-        {{.step = (double)INFINITY}, STF_ERROR_STEP},
-        {{.step = DBL_MIN, .substeps = 2}, STF_ERROR_STEP},
-        {{.step = (double)REAL_MAX / 2, .substeps = 1, .gravity = {infinite, 0, 0}}, STF_ERROR_NOT_FINITE},
-        {{.gravity = {0, not_a_number, 0}}, STF_ERROR_NOT_FINITE},
-        {{.dimensions = 2, .gravity = {0, 0, -1}}, STF_ERROR_DIMENSIONS},
-        {{.dimensions = 1, .gravity = {0, -1, 0}}, STF_ERROR_DIMENSIONS},
-        {{.integrator = &nameless}, STF_ERROR_DESCRIPTOR},
-        {{.integrator = &greedy}, STF_ERROR_DESCRIPTOR},
-        {{.integrator = &mindful}, STF_ERROR_DESCRIPTOR},
-        {{.integrator = &negative}, STF_ERROR_DESCRIPTOR},
-        {{.capacity = SIZE_MAX}, STF_ERROR_MEMORY},
-        {{.capacity = SIZE_MAX / sizeof(stf_real) / 32}, STF_ERROR_MEMORY}, /* its bytes would wrap round */
-    };
-
-    for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        stf_world *world = NULL;
-        assert_refused(stf_world_create(&cases[i].def, &world), cases[i].expected);
-        assert_null(world);
-    }
-    stf_world *world = NULL;
-    assert_refused(stf_world_create(NULL, &world), STF_ERROR_NULL);
-    assert_refused(stf_world_create(&(stf_world_def){0}, NULL), STF_ERROR_NULL);
-    stf_world_destroy(NULL);
-}
-
-static void bad_particles_are_refused_and_change_nothing(void **state)
-{
-    (void)state;
-    const stf_particle good = {.position = {1, 1, 0}, .inverse_mass = 1};
-    const struct {
-        stf_particle particle;
-        stf_result expected;
-    } cases[] = {
-        {{.position = {not_a_number, 0, 0}}, STF_ERROR_NOT_FINITE},
-        {{.position = {0, infinite, 0}}, STF_ERROR_NOT_FINITE},
-        {{.position = {0, 0, not_a_number}}, STF_ERROR_NOT_FINITE},
-        {{.velocity = {0, -infinite, 0}}, STF_ERROR_NOT_FINITE},
-        {{.position = {0, 0, 1}}, STF_ERROR_DIMENSIONS},
-        {{.velocity = {0, 0, -1}}, STF_ERROR_DIMENSIONS},
-        {{.inverse_mass = -1}, STF_ERROR_MASS},
-        {{.inverse_mass = not_a_number}, STF_ERROR_MASS},
-        {{.inverse_mass = infinite}, STF_ERROR_MASS},
-        {{.inverse_mass = 1 / REAL_MAX / 2}, STF_ERROR_MASS},
-        {{.inverse_mass = 1, .radius = -1}, STF_ERROR_RADIUS},
-        {{.inverse_mass = 1, .radius = not_a_number}, STF_ERROR_RADIUS},
-        {{.inverse_mass = 1, .radius = infinite}, STF_ERROR_RADIUS},
-    };
-    stf_world *world = busy_world(NULL);
-    const uint64_t before = hash_of(world);
-
-    for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        const stf_particle pair[] = {good, cases[i].particle};
-        size_t index = 77;
-
-        assert_refused(stf_world_add(world, &cases[i].particle, &index), cases[i].expected);
-        assert_refused(stf_world_add_many(world, pair, 2, &index), cases[i].expected);
-        assert_refused(stf_world_set(world, 1, &cases[i].particle), cases[i].expected);
-        assert_int_equal(index, 77);
-        assert_true(hash_of(world) == before);
-    }
-    stf_world *without_radius = make_world((stf_world_def){0});
-    assert_refused(stf_world_add(without_radius, &(stf_particle){.radius = 1}, NULL), STF_ERROR_RADIUS);
-    stf_world_destroy(without_radius);
-    stf_world_destroy(world);
-}
-
-static void missing_particles_pointers_and_forces_are_refused_and_change_nothing(void **state)
-{
-    (void)state;
-    stf_world *world = busy_world(NULL);
-    const uint64_t before = hash_of(world);
-    stf_particle particle = {.inverse_mass = 1};
-    double momentum[3];
-    stf_energy energy;
-    float vertices[6];
-    size_t count = 7;
-
-    assert_refused(stf_world_get(world, 3, &particle), STF_ERROR_PARTICLE);
-    assert_refused(stf_world_set(world, 3, &particle), STF_ERROR_PARTICLE);
-    assert_refused(stf_world_set(world, SIZE_MAX, &particle), STF_ERROR_PARTICLE);
-    assert_refused(stf_world_remove(world, 3, NULL), STF_ERROR_PARTICLE);
-
-    assert_refused(stf_world_add(world, NULL, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_add_many(world, NULL, 1, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_get(world, 0, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_set(world, 0, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_set_integrator(world, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_energy(world, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_momentum(world, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_copy_positions(world, 1, NULL, 0), STF_ERROR_NULL);
-    assert_refused(stf_world_add_force(world, NULL, NULL, 0, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_add_force(world, &stf_force_linear_drag, NULL, 1, NULL), STF_ERROR_NULL);
-
-    assert_refused(stf_world_add(NULL, &particle, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_add_many(NULL, &particle, 1, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_get(NULL, 0, &particle), STF_ERROR_NULL);
-    assert_refused(stf_world_set(NULL, 0, &particle), STF_ERROR_NULL);
-    assert_refused(stf_world_remove(NULL, 0, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_clear(NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_reserve(NULL, 1), STF_ERROR_NULL);
-    assert_refused(stf_world_step(NULL, 1), STF_ERROR_NULL);
-    assert_refused(stf_world_set_step(NULL, 1), STF_ERROR_NULL);
-    assert_refused(stf_world_set_substeps(NULL, 1), STF_ERROR_NULL);
-    assert_refused(stf_world_set_gravity(NULL, (stf_vector){0, 0, 0}), STF_ERROR_NULL);
-    assert_refused(stf_world_set_integrator(NULL, &stf_rk4), STF_ERROR_NULL);
-    assert_refused(stf_world_energy(NULL, &energy), STF_ERROR_NULL);
-    assert_refused(stf_world_momentum(NULL, momentum), STF_ERROR_NULL);
-    assert_refused(stf_world_copy_positions(NULL, 1, vertices, 0), STF_ERROR_NULL);
-    assert_refused(stf_world_add_force(NULL, &stf_force_linear_drag, NULL, 0, NULL), STF_ERROR_NULL);
-    assert_refused(stf_world_set_force(NULL, 1, NULL, 0), STF_ERROR_NULL);
-    assert_refused(stf_world_remove_force(NULL, 1), STF_ERROR_NULL);
-
-    assert_refused(stf_world_set_force(world, 0, NULL, 0), STF_ERROR_FORCE);
-    assert_refused(stf_world_set_force(world, 4, NULL, 0), STF_ERROR_FORCE);
-    assert_refused(stf_world_remove_force(world, 4), STF_ERROR_FORCE);
-    assert_null(stf_world_force_records(world, 4, &count));
-    assert_int_equal(count, 0);
-    assert_null(stf_world_force(world, 4));
-    assert_int_equal(stf_world_force_at(world, 3), 0);
-    assert_true(hash_of(world) == before);
-
-    assert_int_equal(stf_world_count(NULL), 0);
-    assert_int_equal(stf_world_ticks(NULL), 0);
-    assert_true(stf_world_time(NULL) == 0 && stf_world_step_size(NULL) == 0 && stf_world_gravity(NULL).y == 0);
-    assert_int_equal(stf_world_substeps(NULL), 0);
-    assert_int_equal(stf_world_dimensions(NULL), 0);
-    assert_null(stf_world_integrator(NULL));
-    assert_null(stf_world_force(NULL, 1));
-    assert_int_equal(stf_world_force_at(NULL, 0), 0);
-    assert_false(stf_world_find_non_finite(NULL, NULL));
-    stf_world_destroy(world);
 }
 
 /* A lot is refused as a whole, wherever in it the bad one is; what is added later finds the lanes empty. */
@@ -208,94 +59,6 @@ static void a_bad_particle_late_in_a_lot_leaves_nothing_of_it(void **state)
         stf_world_destroy(world);
         stf_world_destroy(untouched);
     }
-}
-
-static void bad_settings_are_refused_and_change_nothing(void **state)
-{
-    (void)state;
-    stf_world *world = busy_world(NULL);
-    const uint64_t before = hash_of(world);
-    const stf_integrator stepless = {.name = "stepless"};
-    const double bad_steps[] = {0, -1, (double)NAN, (double)INFINITY, DBL_MIN / 4};
-    const double bad_alphas[] = {-0.001, 1.001, (double)NAN};
-    float vertices[6];
-
-    for (size_t i = 0; i < COUNT_OF(bad_steps); i++)
-        assert_refused(stf_world_set_step(world, bad_steps[i]), STF_ERROR_STEP);
-#ifndef STF_DOUBLE
-    assert_refused(stf_world_set_step(world, 1e39), STF_ERROR_STEP); /* not a float */
-    assert_refused(stf_world_set_step(world, 1e-39), STF_ERROR_STEP);
-#endif
-    assert_refused(stf_world_set_substeps(world, 0), STF_ERROR_SUBSTEPS);
-    assert_refused(stf_world_set_gravity(world, (stf_vector){not_a_number, 0, 0}), STF_ERROR_NOT_FINITE);
-    assert_refused(stf_world_set_gravity(world, (stf_vector){0, 0, 1}), STF_ERROR_DIMENSIONS);
-    assert_refused(stf_world_set_integrator(world, &stepless), STF_ERROR_DESCRIPTOR);
-    for (size_t i = 0; i < COUNT_OF(bad_alphas); i++)
-        assert_refused(stf_world_copy_positions(world, bad_alphas[i], vertices, 0), STF_ERROR_ALPHA);
-    assert_true(hash_of(world) == before);
-    stf_world_destroy(world);
-}
-
-static void bad_forces_are_refused_and_change_nothing(void **state)
-{
-    (void)state;
-    const stf_force no_apply = {.name = "no apply"}, no_name = {.apply = stf_force_quadratic_drag.apply};
-    const stf_force no_kind = {.name = "no kind", .apply = stf_force_quadratic_drag.apply, .kind = (stf_force_kind)2};
-    const stf_linear_drag negative_linear = {-1}, nan_linear = {not_a_number};
-    const stf_quadratic_drag negative_quadratic = {-1}, infinite_quadratic = {infinite};
-    const stf_attractor attractors[] = {{{not_a_number, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{0, 0, 0}, infinite, 0},
-                                        {{0, 0, 0}, 1, -1}};
-    const stf_spring springs[] = {{0, 3, 1, 0, 0}, {3, 0, 1, 0, 0}, {1, 1, 1, 0, 0}, {0, 1, -1, 0, 0}, {0, 1, 1, -1, 0},
-                                  {0, 1, 1, 0, -1}, {0, 1, not_a_number, 0, 0}};
-    const stf_anchored_spring anchored[] = {{3, {0, 0, 0}, 1, 0, 0}, {0, {infinite, 0, 0}, 1, 0, 0}, {0, {0, 0, 1}, 1, 0, 0},
-                                            {0, {0, 0, 0}, -1, 0, 0}, {0, {0, 0, 0}, 1, infinite, 0}};
-    const stf_all_pairs_gravity gravity[] = {{infinite, 0}, {1, -1}};
-    const struct {
-        const stf_force *force;
-        const void *record;
-        stf_result expected;
-    } cases[] = {
-        {&no_apply, NULL, STF_ERROR_DESCRIPTOR},
-        {&no_name, NULL, STF_ERROR_DESCRIPTOR},
-        {&no_kind, NULL, STF_ERROR_DESCRIPTOR},
-        {&idle_link, &negative_linear, STF_ERROR_PARAMETERS}, /* it has no parameters */
-        {&stf_force_linear_drag, &negative_linear, STF_ERROR_PARAMETERS},
-        {&stf_force_linear_drag, &nan_linear, STF_ERROR_PARAMETERS},
-        {&stf_force_quadratic_drag, &negative_quadratic, STF_ERROR_PARAMETERS},
-        {&stf_force_quadratic_drag, &infinite_quadratic, STF_ERROR_PARAMETERS},
-        {&stf_force_attractor, &attractors[0], STF_ERROR_NOT_FINITE},
-        {&stf_force_attractor, &attractors[1], STF_ERROR_DIMENSIONS},
-        {&stf_force_attractor, &attractors[2], STF_ERROR_PARAMETERS},
-        {&stf_force_attractor, &attractors[3], STF_ERROR_PARAMETERS},
-        {&stf_force_springs, &springs[0], STF_ERROR_PARTICLE},
-        {&stf_force_springs, &springs[1], STF_ERROR_PARTICLE},
-        {&stf_force_springs, &springs[2], STF_ERROR_PARAMETERS},
-        {&stf_force_springs, &springs[3], STF_ERROR_PARAMETERS},
-        {&stf_force_springs, &springs[4], STF_ERROR_PARAMETERS},
-        {&stf_force_springs, &springs[5], STF_ERROR_PARAMETERS},
-        {&stf_force_springs, &springs[6], STF_ERROR_PARAMETERS},
-        {&stf_force_anchored_springs, &anchored[0], STF_ERROR_PARTICLE},
-        {&stf_force_anchored_springs, &anchored[1], STF_ERROR_NOT_FINITE},
-        {&stf_force_anchored_springs, &anchored[2], STF_ERROR_DIMENSIONS},
-        {&stf_force_anchored_springs, &anchored[3], STF_ERROR_PARAMETERS},
-        {&stf_force_anchored_springs, &anchored[4], STF_ERROR_PARAMETERS},
-        {&stf_force_all_pairs_gravity, &gravity[0], STF_ERROR_PARAMETERS},
-        {&stf_force_all_pairs_gravity, &gravity[1], STF_ERROR_PARAMETERS},
-    };
-    stf_world *world = busy_world(NULL);
-    const uint64_t before = hash_of(world);
-
-    for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        stf_force_id id = 77;
-        assert_refused(stf_world_add_force(world, cases[i].force, cases[i].record, cases[i].record ? 1 : 0, &id),
-                       cases[i].expected);
-        assert_int_equal(id, 77);
-        assert_true(hash_of(world) == before);
-    }
-    assert_refused(stf_world_set_force(world, 1, &springs[0], 1), STF_ERROR_PARTICLE);
-    assert_refused(stf_world_set_force(world, 3, &negative_linear, 1), STF_ERROR_PARAMETERS);
-    assert_true(hash_of(world) == before);
-    stf_world_destroy(world);
 }
 
 static void every_result_has_its_own_text(void **state)
@@ -362,83 +125,6 @@ static void steps_and_questions_allocate_nothing(void **state)
     stf_world_destroy(world);
 }
 
-/* Calls that need memory, each on a busy world. */
-static stf_result grow(stf_world *world) { return stf_world_reserve(world, 5000); }
-
-static stf_result add_many(stf_world *world)
-{
-    static const stf_particle particles[20];
-    return stf_world_add_many(world, particles, COUNT_OF(particles), NULL);
-}
-
-static stf_result add_to_full(stf_world *world)
-{
-    stf_result result = STF_OK;
-    for (int i = 0; i < 13 && !result; i++) /* 16 fill the first block */
-        result = stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
-    return result ? result : stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL);
-}
-
-static stf_result use_rk4(stf_world *world) { return stf_world_set_integrator(world, &stf_rk4); }
-
-static stf_result add_attractor(stf_world *world)
-{
-    return stf_world_add_force(world, &stf_force_attractor, &(stf_attractor){.strength = 1}, 1, NULL);
-}
-
-static stf_result change_springs(stf_world *world)
-{
-    const stf_spring springs[] = {{0, 1, 1, 0, 0}, {1, 2, 1, 0, 0}};
-    return stf_world_set_force(world, 1, springs, 2);
-}
-
-static stf_result add_nine_forces(stf_world *world)
-{
-    stf_result result = STF_OK;
-    for (int i = 0; i < 9 && !result; i++)
-        result = stf_world_add_force(world, &time_force, NULL, 0, NULL);
-    return result;
-}
-
-static stf_result tie(stf_world *world)
-{
-    stf_result result = stf_world_remove_force(world, 1);
-    return result ? result : stf_world_add_force(world, &stf_force_all_pairs_gravity, &(stf_all_pairs_gravity){1, 1}, 1, NULL);
-}
-
-static void without_memory_calls_fail_and_change_nothing_they_did_not_do(void **state)
-{
-    (void)state;
-    static const struct {
-        stf_result (*call)(stf_world *);
-        bool one_step; /* does nothing else before what needs memory */
-    } calls[] = {{grow, true}, {add_many, true}, {add_to_full, false}, {use_rk4, true}, {add_attractor, true},
-                 {change_springs, true}, {add_nine_forces, false}, {tie, false}};
-
-    for (size_t k = 0; k < COUNT_OF(calls); k++)
-        for (size_t n = 1;; n++) {
-            counting c = {0};
-            const stf_allocator allocator = counting_allocator(&c);
-            stf_world *world = busy_world(&allocator);
-            const uint64_t before = hash_of(world);
-
-            c.fail_at = c.calls + n;
-            const stf_result result = calls[k].call(world);
-            const bool failed = c.calls >= c.fail_at;
-            assert_refused(result, failed ? STF_ERROR_MEMORY : STF_OK);
-            if (failed && calls[k].one_step)
-                assert_true(hash_of(world) == before);
-            assert_ok(stf_world_step(world, 3));
-            stf_world_destroy(world);
-            assert_int_equal(c.blocks, 0);
-            assert_int_equal(c.bytes, 0);
-            if (!failed) {
-                assert_true(n > 1); /* at least one allocation was there to fail */
-                break;
-            }
-        }
-}
-
 /* Hands out another allocator's memory until it is told to refuse; then it notes the least that it was asked for. */
 typedef struct shortage {
     stf_allocator lender;
@@ -487,20 +173,6 @@ static void no_room_is_asked_for_whose_bytes_wrap_round(void **state)
     assert_true(s.least > SIZE_MAX / 2);
     stf_world_destroy(world);
     assert_int_equal(c.blocks, 0);
-}
-
-static void without_memory_no_world_is_made(void **state)
-{
-    (void)state;
-    for (size_t n = 1; n <= 2; n++) {
-        counting c = {.fail_at = n};
-        const stf_world_def def = {.capacity = 1000, .allocator = counting_allocator(&c)};
-        stf_world *world = NULL;
-
-        assert_refused(stf_world_create(&def, &world), STF_ERROR_MEMORY);
-        assert_null(world);
-        assert_int_equal(c.blocks, 0);
-    }
 }
 
 static void time_is_ticks_times_step(void **state)
@@ -1362,21 +1034,78 @@ static void exact_solutions_are_consistent(void **state)
     }
 }
 
+static void run_in_turn(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    (void)user;
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+}
+
+static void describe_tells_how_a_world_steps(void **state)
+{
+    (void)state;
+    const stf_integrator plain = {.name = "plain", .step = stf_rk4.step, .work_arrays = stf_rk4.work_arrays};
+    const struct {
+        stf_world_def def;
+        const stf_force *force;
+        const char *expected;
+    } cases[] = {
+        {{.parallel = {.run = run_in_turn, .tasks = 3}}, NULL, "a step in up to 3 parts"},
+        {{.step = 1}, NULL, "free flight"},
+        {{.integrator = &plain}, NULL, "block by block"},
+        {{.step = 1}, &time_force, "field, 0 records, of t"},
+        {{.step = 1}, &idle_link, "links tie particles together"},
+    };
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        stf_world *world = make_world(cases[i].def);
+        char text[2048];
+
+        if (cases[i].force)
+            add_force(world, cases[i].force, NULL);
+        stf_world_describe(world, text, sizeof text);
+        assert_non_null(strstr(text, cases[i].expected));
+        stf_world_destroy(world);
+    }
+}
+
+static void an_empty_lot_needs_no_particles(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+    size_t first = 77;
+
+    assert_ok(stf_world_add_many(world, NULL, 0, &first));
+    assert_true(first == 3 && hash_of(world) == before);
+    stf_world_destroy(world);
+}
+
+static size_t too_many(size_t record_count) { return record_count > 1 ? SIZE_MAX : 0; }
+
+static void a_force_says_how_many_records_are_too_many(void **state)
+{
+    (void)state;
+    const stf_force lonely = {.name = "lonely", .record_size = sizeof(stf_linear_drag), .apply = stf_force_quadratic_drag.apply,
+                              .arranged_size = too_many};
+    const stf_quadratic_drag records[2] = {{1}, {2}};
+    stf_world *world = busy_world(NULL);
+    const uint64_t before = hash_of(world);
+
+    assert_refused(stf_world_add_force(world, &lonely, records, 2, NULL), STF_ERROR_MEMORY);
+    assert_true(hash_of(world) == before);
+    assert_ok(stf_world_add_force(world, &lonely, records, 1, NULL));
+    stf_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_defs_are_refused),
-        cmocka_unit_test(bad_particles_are_refused_and_change_nothing),
-        cmocka_unit_test(missing_particles_pointers_and_forces_are_refused_and_change_nothing),
         cmocka_unit_test(a_bad_particle_late_in_a_lot_leaves_nothing_of_it),
-        cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
-        cmocka_unit_test(bad_forces_are_refused_and_change_nothing),
         cmocka_unit_test(every_result_has_its_own_text),
         cmocka_unit_test(all_memory_comes_from_the_allocator_and_goes_back),
         cmocka_unit_test(steps_and_questions_allocate_nothing),
-        cmocka_unit_test(without_memory_calls_fail_and_change_nothing_they_did_not_do),
         cmocka_unit_test(no_room_is_asked_for_whose_bytes_wrap_round),
-        cmocka_unit_test(without_memory_no_world_is_made),
         cmocka_unit_test(time_is_ticks_times_step),
         cmocka_unit_test(forces_see_the_time_of_their_stage),
         cmocka_unit_test(forces_see_the_time_that_the_world_says_after_a_change_of_step),
@@ -1409,6 +1138,9 @@ int main(void)
         cmocka_unit_test(clear_empties_and_keeps_the_rest),
         cmocka_unit_test(every_scene_is_made_and_stays_finite_with_its_own_integrator),
         cmocka_unit_test(exact_solutions_are_consistent),
+        cmocka_unit_test(describe_tells_how_a_world_steps),
+        cmocka_unit_test(an_empty_lot_needs_no_particles),
+        cmocka_unit_test(a_force_says_how_many_records_are_too_many),
     };
 
     return cmocka_run_group_tests_name("world, " REAL_NAME, tests, NULL, NULL);

@@ -44,7 +44,7 @@ typedef enum stf_result {
     STF_ERROR_NOT_FINITE, /* a NaN or an infinity */
     STF_ERROR_DIMENSIONS, /* dimensions over 3, or a component other than 0 in a dimension that the world lacks */
     STF_ERROR_STEP,       /* a step that is negative, not finite, or over its substeps no normal number of stf_real */
-    STF_ERROR_SUBSTEPS,   /* 0 substeps */
+    STF_ERROR_SUBSTEPS,   /* 0 substeps, or more than STF_SUBSTEPS_MAX */
     STF_ERROR_MASS,       /* an inverse mass that is negative, infinite, NaN or subnormal (its mass may be no stf_real) */
     STF_ERROR_RADIUS,     /* a radius that is negative, infinite or NaN, or not 0 in a world that does not keep radii */
     STF_ERROR_PARTICLE,   /* no particle has this index */
@@ -55,7 +55,7 @@ typedef enum stf_result {
                              that does not compensate, for a world that does */
     STF_ERROR_FRAME_TIME, /* a frame time, time scale or display period that is negative or not finite */
     STF_ERROR_ALPHA,      /* a blending factor outside [0, 1] */
-    STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over */
+    STF_ERROR_STRIDE,     /* a stride that is smaller than what it steps over, or beyond memory */
     STF_ERROR_NO_PREVIOUS, /* blending was asked of a world that does not keep previous positions */
     STF_ERROR_BUFFER,      /* a buffer that is smaller than what has to go into it */
     STF_ERROR_UNSAVABLE,   /* a force has records and does not say what they are made of (stf_force.fields) */

@@ -31,12 +31,15 @@ typedef struct stf_guard {
     double velocity_bound; /* m/s, likewise */
 } stf_guard;
 
+/* The most substeps of a tick: more than any scene can use, and few enough that a wrong number is not hours. */
+#define STF_SUBSTEPS_MAX 1000000
+
 /* What to create. All zero is a valid def: `stf_world_def def = {0};`, then set what you need. */
 typedef struct stf_world_def {
     unsigned dimensions;              /* 1, 2 or 3; 0: 3 */
     const stf_integrator *integrator; /* NULL: &stf_semi_implicit_euler */
     double step;                      /* s a tick; 0: 1/60 */
-    unsigned substeps;                /* steps of the integrator a tick; 0: 1 */
+    unsigned substeps;                /* steps of the integrator a tick, to STF_SUBSTEPS_MAX; 0: 1 */
     stf_vector gravity;               /* m/s^2 */
     size_t capacity;                  /* particles to make room for; a world grows when it must, but never in a step */
     bool keep_previous;               /* keep the positions of the tick before, for blending; costs a vector a particle */
@@ -49,8 +52,8 @@ typedef struct stf_world_def {
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
-/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, NOT_FINITE (gravity), DESCRIPTOR (integrator, also one
-   without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS (guard). */
+/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, SUBSTEPS, NOT_FINITE (gravity), DESCRIPTOR (integrator,
+   also one without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS (guard). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
@@ -268,7 +271,8 @@ STF_API stf_particles stf_world_view(const stf_world *world);
  * acceleration = a(time, position, velocity) in m/s^2, gravity and every force of this world as it stands, for any state that
  * is asked about; the world is not changed. The three arrays do not overlap, are laid out as those of stf_world_view and as
  * long, lanes behind the last particle included (finite numbers, best 0): stride x dimensions reals a block; aligned to 64
- * bytes if a force of your own relies on that. Errors: NULL. Cost: one call of every force; no allocation.
+ * bytes if a force of your own relies on that. Errors: NULL, NOT_FINITE (time). Cost: one call of every force; no
+ * allocation.
  */
 STF_API stf_result stf_world_accelerations(const stf_world *world, double time, const stf_real *position,
                                            const stf_real *velocity, stf_real *acceleration);

@@ -17,13 +17,10 @@
 double stf_dot(size_t n, const double *a, const double *b)
 {
     double sums[LANES] = {0}, sum = 0;
-    size_t i = 0;
 
-    for (; i + LANES <= n; i += LANES)
+    for (size_t i = 0; i < n; i += LANES)
         for (size_t lane = 0; lane < LANES; lane++)
             sums[lane] += a[i + lane] * b[i + lane];
-    for (; i < n; i++)
-        sum += a[i] * b[i];
     for (size_t lane = 0; lane < LANES; lane++)
         sum += sums[lane];
     return sum;

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* n is a multiple of 8, as lengths of whole blocks are. */
 double stf_dot(size_t n, const double *a, const double *b);
 
 /* The eigenvalues of the n x n matrix `m`, row by row, which is destroyed. */

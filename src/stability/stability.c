@@ -7,7 +7,6 @@
  */
 #include "steadfast/stability.h"
 
-#include <limits.h>
 #include <string.h>
 
 #include "../allocator.h"
@@ -327,9 +326,9 @@ static stf_force_id find_force(stf_jacobian *j, const double *u, double size)
 
 static unsigned count_substeps(double tick, double limit)
 {
-    const double needed = ceil(tick / (STF_STABILITY_SAFETY * limit));
+    const double needed = fmax(1, ceil(tick / (STF_STABILITY_SAFETY * limit)));
 
-    return limit > 0 && needed < UINT_MAX ? (needed < 1 ? 1 : (unsigned)needed) : 0;
+    return limit > 0 && needed <= STF_SUBSTEPS_MAX ? (unsigned)needed : 0;
 }
 
 static void describe(search *s, const mode *m, stf_stability *found)

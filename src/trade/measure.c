@@ -193,10 +193,23 @@ static stf_result time_row(const stf_trade_run *of, size_t index, double estimat
 
 /* ---- all ------------------------------------------------------------------------------------------------------------ */
 
+static unsigned repeats_of(const stf_trade_def *def) { return def->repeats > 0 ? def->repeats : DEFAULT_REPEATS; }
+
+/* Whether a size_t counts the bytes of both lists and of all repeats. */
+static bool is_countable(const stf_trade_def *def)
+{
+    const size_t most = (SIZE_MAX / 4 - sizeof(job)) / sizeof(double) / repeats_of(def);
+
+    return def->integrator_count <= most && def->steps_count <= most &&
+           (def->steps_count == 0 || def->integrator_count <= most / def->steps_count);
+}
+
 static stf_result check(const stf_trade_def *def, const stf_trade_row *rows)
 {
     if (!def || !rows || !def->build || !def->reference || !def->integrators || !def->steps)
         return STF_ERROR_NULL;
+    if (!is_countable(def))
+        return STF_ERROR_MEMORY;
     for (size_t i = 0; i < def->integrator_count; i++)
         if (!def->integrators[i])
             return STF_ERROR_NULL;
@@ -233,9 +246,7 @@ stf_result stf_trade_begin(const stf_trade_def *def, stf_trade_row *rows, stf_tr
         return STF_ERROR_DESCRIPTOR;
 
     const size_t count = def->integrator_count * def->steps_count;
-    const unsigned repeats = def->repeats > 0 ? def->repeats : DEFAULT_REPEATS;
-    if (count > (SIZE_MAX / 2 - sizeof(job)) / sizeof(double) / repeats)
-        return STF_ERROR_MEMORY;
+    const unsigned repeats = repeats_of(def);
     const size_t bytes = sizeof(job) + count * repeats * sizeof(double) + def->integrator_count * sizeof *def->integrators +
                          def->steps_count * sizeof *def->steps;
     job *j = stf_allocator_allocate(&allocator, bytes);

@@ -266,6 +266,8 @@ stf_result stf_world_accelerations(const stf_world *world, double time, const st
 {
     if (!world || !position || !velocity || !acceleration)
         return STF_ERROR_NULL;
+    if (!isfinite(time))
+        return STF_ERROR_NOT_FINITE;
 
     stf_range range;
 

@@ -1,10 +1,13 @@
 #include "world.h"
 
-bool stf_world_is_step(double step, unsigned substeps)
+stf_result stf_world_check_step(double step, unsigned substeps)
 {
+    if (substeps == 0 || substeps > STF_SUBSTEPS_MAX)
+        return STF_ERROR_SUBSTEPS;
+
     const double integrator_step = step / substeps;
 
-    return integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX && isfinite(step);
+    return integrator_step >= (double)STF_REAL_MIN && integrator_step <= (double)STF_REAL_MAX ? STF_OK : STF_ERROR_STEP;
 }
 
 static bool is_integrator(const stf_integrator *integrator, bool compensated)
@@ -48,8 +51,10 @@ static stf_result check_def(const stf_world_def *def)
 {
     if (def->dimensions > STF_DIMENSIONS_MAX)
         return STF_ERROR_DIMENSIONS;
-    if (!stf_world_is_step(def->step, def->substeps))
-        return STF_ERROR_STEP;
+
+    const stf_result bad = stf_world_check_step(def->step, def->substeps);
+    if (bad)
+        return bad;
     if (!is_integrator(def->integrator, def->compensated))
         return STF_ERROR_DESCRIPTOR;
     return stf_world_check_gravity(def->gravity, def->dimensions);
@@ -156,8 +161,10 @@ stf_result stf_world_set_step(stf_world *world, double step)
 {
     if (!world)
         return STF_ERROR_NULL;
-    if (!stf_world_is_step(step, world->substeps))
-        return STF_ERROR_STEP;
+
+    const stf_result bad = stf_world_check_step(step, world->substeps);
+    if (bad)
+        return bad;
     if (step == world->step)
         return STF_OK;
 
@@ -172,10 +179,10 @@ stf_result stf_world_set_substeps(stf_world *world, unsigned substeps)
 {
     if (!world)
         return STF_ERROR_NULL;
-    if (substeps == 0)
-        return STF_ERROR_SUBSTEPS;
-    if (!stf_world_is_step(world->step, substeps))
-        return STF_ERROR_STEP;
+
+    const stf_result bad = stf_world_check_step(world->step, substeps);
+    if (bad)
+        return bad;
 
     if (substeps != world->substeps)
         stf_world_forget_history(world, 0, world->count);

@@ -13,6 +13,17 @@ static bool is_force(const stf_force *force)
            (!has_fields || stf_fields_size(force->fields) == force->record_size);
 }
 
+/* Bytes for so many records and what is arranged behind them; 0 if that is no size_t. */
+static size_t bytes_of(const stf_force *force, size_t record_count)
+{
+    const size_t arranged = force->arranged_size ? force->arranged_size(record_count) : 0;
+    const size_t most = SIZE_MAX / 2;
+
+    if (record_count > (most - STF_ALIGNMENT) / force->record_size || arranged > most)
+        return 0;
+    return (record_count * force->record_size + STF_ALIGNMENT - 1) / STF_ALIGNMENT * STF_ALIGNMENT + arranged;
+}
+
 stf_result stf_force_check_records(const stf_force *force, const void *records, size_t record_count, unsigned dimensions,
                                    size_t particle_count)
 {
@@ -20,6 +31,8 @@ stf_result stf_force_check_records(const stf_force *force, const void *records, 
         return STF_ERROR_NULL;
     if (force->record_size == 0 && record_count > 0)
         return STF_ERROR_PARAMETERS;
+    if (record_count > 0 && bytes_of(force, record_count) == 0)
+        return STF_ERROR_MEMORY;
     for (size_t i = 0; force->check && i < record_count; i++) {
         const void *record = (const char *)records + i * force->record_size;
         const stf_result bad = force->check(record, dimensions, particle_count);
@@ -41,22 +54,11 @@ void stf_force_arrange_records(stf_added_force *added, size_t record_count)
         added->force->arrange(added->records, record_count);
 }
 
-/* Bytes for so many records and what is arranged behind them; 0 if that is no size_t. */
-static size_t bytes_of(const stf_force *force, size_t record_count)
-{
-    const size_t arranged = force->arranged_size ? force->arranged_size(record_count) : 0;
-    const size_t most = SIZE_MAX / 2;
-
-    if (record_count > (most - STF_ALIGNMENT) / force->record_size || arranged > most)
-        return 0;
-    return (record_count * force->record_size + STF_ALIGNMENT - 1) / STF_ALIGNMENT * STF_ALIGNMENT + arranged;
-}
-
 bool stf_force_has_room(const stf_added_force *added, size_t record_count)
 {
     const size_t bytes = record_count > 0 ? bytes_of(added->force, record_count) : 0;
 
-    return record_count == 0 || (bytes > 0 && bytes <= added->bytes);
+    return bytes <= added->bytes;
 }
 
 stf_result stf_force_allocate_records(const stf_world *world, stf_added_force *added, size_t record_count)

@@ -97,10 +97,10 @@ static stf_result match_head(const saved *s, const stf_world *world, stf_mismatc
 
 static stf_result check_head(const saved *s)
 {
-    if (s->substeps == 0)
-        return STF_ERROR_SUBSTEPS;
-    if (!stf_world_is_step(s->step, s->substeps))
-        return STF_ERROR_STEP;
+    const stf_result bad = stf_world_check_step(s->step, s->substeps);
+
+    if (bad)
+        return bad;
     if (!isfinite(s->step_start_time))
         return STF_ERROR_NOT_FINITE;
     if (s->step_start_tick > s->ticks || s->flags >= STF_SAVE_COMPENSATED << 1)

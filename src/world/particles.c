@@ -153,7 +153,7 @@ static bool same_place(stf_vector a, stf_vector b) { return a.x == b.x && a.y ==
 static stf_result grow(stf_world *world, size_t needed)
 {
     const size_t capacity = world->storage.capacity;
-    const bool outgrown = needed > capacity && world->count > 0 && capacity <= SIZE_MAX / GROWTH;
+    const bool outgrown = needed > capacity && world->count > 0;
 
     return stf_storage_require(world, outgrown && needed < GROWTH * capacity ? GROWTH * capacity : needed, world->integrator,
                                false);
@@ -291,6 +291,8 @@ stf_result stf_world_copy_positions(const stf_world *world, double alpha, void *
     if (alpha < 1 && !world->keep_previous)
         return STF_ERROR_NO_PREVIOUS;
     if (stride_bytes > 0 && stride_bytes < world->dimensions * sizeof(float))
+        return STF_ERROR_STRIDE;
+    if (world->count > 0 && stride_bytes > SIZE_MAX / 2 / world->count)
         return STF_ERROR_STRIDE;
 
     const size_t bytes = stride_bytes ? stride_bytes : world->dimensions * sizeof(float);

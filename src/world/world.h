@@ -23,7 +23,7 @@
 #define stf_world_renumber_forces stf_world_renumber_forces_f64
 #define stf_world_drop_particle_records stf_world_drop_particle_records_f64
 #define stf_world_release_forces stf_world_release_forces_f64
-#define stf_world_is_step stf_world_is_step_f64
+#define stf_world_check_step stf_world_check_step_f64
 #define stf_world_check_gravity stf_world_check_gravity_f64
 #define stf_world_put_gravity stf_world_put_gravity_f64
 #define stf_force_check_records stf_force_check_records_f64
@@ -219,8 +219,8 @@ void stf_world_drop_particle_records(stf_world *world);
 
 void stf_world_release_forces(stf_world *world);
 
-/* Whether a step of the integrator is a number that the precision holds without loss. */
-bool stf_world_is_step(double step, unsigned substeps);
+/* Whether there may be so many substeps, and each is a number that the precision holds without loss. */
+stf_result stf_world_check_step(double step, unsigned substeps);
 
 stf_result stf_world_check_gravity(stf_vector gravity, unsigned dimensions);
 void stf_world_put_gravity(stf_world *world, stf_vector gravity);

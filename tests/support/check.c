@@ -35,8 +35,7 @@ void check_result(stf_result result, stf_result expected, const char *what, cons
     _fail(file, line);
 }
 
-/* FNV-1a, 64 bits. */
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
 {
     const unsigned char *at = bytes;
 
@@ -82,7 +81,7 @@ uint64_t hash_of(const stf_world *world)
     const unsigned numbers[] = {stf_world_substeps(world), stf_world_dimensions(world)};
     const stf_vector gravity = stf_world_gravity(world);
     const stf_integrator *integrator = stf_world_integrator(world);
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    uint64_t hash = HASH_START;
 
     hash = hash_bytes(hash, &count, sizeof count);
     hash = hash_bytes(hash, &ticks, sizeof ticks);

@@ -42,6 +42,10 @@ void check_result(stf_result result, stf_result expected, const char *what, cons
  */
 uint64_t hash_of(const stf_world *world);
 
+/* FNV-1a, 64 bits: a hash of what `hash` is of and these bytes; from HASH_START on. */
+#define HASH_START UINT64_C(0xcbf29ce484222325)
+uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count);
+
 /* The next of a sequence of pseudorandom numbers in [0, 1) with 24 bits (splitmix64); *state starts as any seed. */
 double next_random(uint64_t *state);
 

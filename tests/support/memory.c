@@ -12,7 +12,7 @@ static void *allocate(void *user, size_t size, size_t alignment)
     counting *c = user;
 
     assert_int_equal(alignment, 64);
-    if (++c->calls == c->fail_at)
+    if (++c->calls == c->fail_at || (c->most > 0 && size > c->most))
         return NULL;
 
     unsigned char *taken = malloc(size + 2 * alignment);

@@ -7,7 +7,8 @@
 
 #ifndef TRADE_SCENE_BUILDER_ONLY
 
-const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1};
+const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1, 1};
+stf_allocator trade_scene_allocator;
 
 bool trade_scene_exact_fall(void *user, size_t particle, double time, double position[3], double velocity[3])
 {
@@ -121,19 +122,28 @@ static stf_result add_crowd(stf_world *world)
     return result;
 }
 
+static stf_result add_rest(stf_world *world) { return add(world, 5.3, 0.1, 0, 0, 1); }
+
+static stf_result add_nothing(stf_world *world)
+{
+    (void)world;
+    return STF_OK;
+}
+
 stf_result trade_scene_build(void *user, stf_world **world)
 {
     static stf_result (*const populate[TRADE_SCENES])(stf_world *) = {
-        add_pendulum, add_binary, add_fall, add_chaos, NULL, add_crowd};
+        add_pendulum, add_binary, add_fall, add_chaos, add_rest, add_crowd, add_nothing};
     const trade_scene which = *(const trade_scene *)user;
     const bool falls = which == TRADE_PENDULUM || which == TRADE_FALL;
-    const stf_world_def def = {.dimensions = 2, .gravity = {0, falls ? (stf_real)-GRAVITY : 0, 0}};
+    const stf_world_def def = {.dimensions = 2, .gravity = {0, falls ? (stf_real)-GRAVITY : 0, 0},
+                               .allocator = trade_scene_allocator};
     stf_world *made;
     stf_result result = stf_world_create(&def, &made);
     if (result)
         return result;
 
-    result = populate[which] ? populate[which](made) : add(made, 5.3, 0.1, 0, 0, 1);
+    result = populate[which](made);
     if (result)
         stf_world_destroy(made);
     else

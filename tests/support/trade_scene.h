@@ -16,11 +16,15 @@ typedef enum trade_scene {
     TRADE_CHAOS,        /* three equal masses that meet closely */
     TRADE_REST,         /* nothing moves */
     TRADE_CROWD,        /* 600 particles, which fill several blocks, in drag */
+    TRADE_EMPTY,        /* no particle */
     TRADE_SCENES
 } trade_scene;
 
 /* s */
 extern const double trade_scene_durations[TRADE_SCENES];
+
+/* Of the worlds that are built; all zero at first. */
+extern stf_allocator trade_scene_allocator;
 
 #ifndef STF_DOUBLE
 stf_result trade_scene_build(void *user, stf_world **world);
