@@ -42,6 +42,10 @@
 #define stf_guard_reset stf_guard_reset_f64
 #define stf_guard_run stf_guard_run_f64
 #define stf_guard_interval stf_guard_interval_f64
+#define stf_guard_find_fault stf_guard_find_fault_f64
+#define stf_guard_keep_checkpoint stf_guard_keep_checkpoint_f64
+#define stf_guard_find_first_fault stf_guard_find_first_fault_f64
+#define stf_guard_go_back stf_guard_go_back_f64
 #define stf_guard_step stf_guard_step_f64
 #endif
 
@@ -286,5 +290,15 @@ unsigned stf_guard_interval(const stf_world *world);
 void stf_guard_reset(stf_world *world);
 
 stf_result stf_guard_step(stf_world *world, unsigned ticks);
+
+/* Whether a particle is bad as the world stands, and which; not bounded: whether any is not finite, and then which is bad. */
+bool stf_guard_find_fault(const stf_world *world, bool is_bounded, stf_fault *fault);
+
+/* The state as it stands is good, and what is gone back to. */
+void stf_guard_keep_checkpoint(stf_world *world);
+
+/* From a fault that is there to the first since the checkpoint: leaves the world as it is, or takes it to the tick before. */
+void stf_guard_find_first_fault(stf_world *world, stf_fault *fault);
+void stf_guard_go_back(stf_world *world, stf_fault *fault);
 
 #endif
