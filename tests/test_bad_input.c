@@ -182,6 +182,10 @@ KIND(moment, DOUBLE, IS_NOT_FINITE(STF_ERROR_NOT_FINITE));
 KIND(blend, DOUBLE, IS_NOT_FINITE(STF_ERROR_ALPHA), IS(-DBL_MIN, STF_ERROR_ALPHA), IS(1 + DBL_EPSILON, STF_ERROR_ALPHA));
 KIND(wish, DOUBLE, IS(NAN, NOTHING), IS(-INFINITY, NOTHING), IS(-1, NOTHING)); /* no row is as good as that */
 
+/* A guard. */
+KIND(guard_mode, UNSIGNED, IS(STF_GUARD_FREEZE + 1, STF_ERROR_PARAMETERS), IS(UINT_MAX, STF_ERROR_PARAMETERS));
+KIND(bound, DOUBLE, IS_NOT_FINITE(STF_ERROR_PARAMETERS), IS(-1, STF_ERROR_PARAMETERS), IS(-DBL_MIN, STF_ERROR_PARAMETERS));
+
 /* Counts, indices, sizes. */
 KIND(dimensions, UNSIGNED, IS(1, STF_ERROR_DIMENSIONS) /* too few for the gravity */,
      IS(4, STF_ERROR_DIMENSIONS), IS(UINT_MAX, STF_ERROR_DIMENSIONS));
@@ -239,6 +243,7 @@ typedef struct arguments {
     const char *name;
     const stf_real *position, *velocity;
     stf_vector vector;
+    stf_guard guard;
 
     const stf_world_def *def;
     stf_world_def the_def;
@@ -388,6 +393,10 @@ CALL(stf_world_momentum, stf_world_momentum(a.world, a.out))
 ASK(stf_world_view, stf_world_view(a.world).position)
 CALL(stf_world_accelerations, stf_world_accelerations(a.world, a.time, a.position, a.velocity, a.out))
 CALL(stf_world_find_non_finite, find_non_finite())
+CALL(stf_world_set_guard, stf_world_set_guard(a.world, a.guard))
+ASK(stf_world_guard, stf_world_guard(a.world).mode)
+ASK(stf_world_fault, !stf_world_fault(a.world, a.out) && a.world)
+CALL(stf_world_clear_fault, stf_world_clear_fault(a.world))
 ASK(stf_world_describe, stf_world_describe(a.world, a.out, sizeof out))
 
 ASK(stf_world_save_size, stf_world_save_size(a.world))
@@ -437,6 +446,7 @@ typedef struct function {
 #define INTEGRATOR_OF(of) \
     ARG(of.name, member), ARG(of.step, member), ARG(of.work_arrays, work_arrays), ARG(of.history_arrays, history_arrays)
 #define ALLOCATOR_OF(of) ARG(of.allocate, half), ARG(of.release, half)
+#define GUARD_OF(of) ARG(of.mode, guard_mode), ARG(of.position_bound, bound), ARG(of.velocity_bound, bound)
 #define WORLD ARG(world, required)
 #define OUT ARG(out, required)
 #define TRADE                                                                                                                  \
@@ -469,7 +479,8 @@ static const function functions[] = {
 
     ON(stf_world_create, ARG(def, required), OUT, ARG(the_def.dimensions, dimensions), ARG(the_def.step, step_or_0),
        ARG(the_def.substeps, substeps_or_0), VECTOR_OF(the_def.gravity), ARG(the_def.capacity, capacity),
-       ARG(the_def.parallel.tasks, tasks_without_run), ALLOCATOR_OF(the_def.allocator), INTEGRATOR_OF(the_integrator)),
+       ARG(the_def.parallel.tasks, tasks_without_run), ALLOCATOR_OF(the_def.allocator), INTEGRATOR_OF(the_integrator),
+       GUARD_OF(the_def.guard)),
     ON(stf_world_destroy, ARG(world, asked)),
     ON(stf_world_count, ARG(world, asked)),
     ON(stf_world_reserve, WORLD, ARG(capacity, capacity)),
@@ -517,6 +528,10 @@ static const function functions[] = {
     ON(stf_world_view, ARG(world, asked)),
     ON(stf_world_accelerations, WORLD, ARG(time, moment), ARG(position, required), ARG(velocity, required), OUT),
     ON(stf_world_find_non_finite, ARG(world, asked)),
+    ON(stf_world_set_guard, WORLD, GUARD_OF(guard)),
+    ON(stf_world_guard, ARG(world, asked)),
+    ON(stf_world_fault, ARG(world, asked)),
+    ON(stf_world_clear_fault, WORLD),
     SAYING(stf_world_describe, ARG(world, asked)),
 
     ON(stf_world_save_size, ARG(world, asked)),
@@ -554,6 +569,7 @@ static void make_worlds(void)
 
     memory = (counting){.most = MEMORY_MOST};
     world = busy_world(&remembering, 0, allocator);
+    assert_ok(stf_world_set_guard(world, (stf_guard){.mode = STF_GUARD_REPORT, .position_bound = 1e6}));
     assert_ok(stf_world_step(world, 7));
     bare = make_world((stf_world_def){.allocator = allocator});
     assert_ok(stf_world_add_many(bare, resting, PARTICLES, NULL));
@@ -615,6 +631,7 @@ static void make_arguments(void)
         .snapshot = snapshot_of_world.bytes, .snapshot_size = stf_world_snapshot_size(world), .capacity = 100, .index = 1,
         .count = 1, .place = 1, .stride = 2 * sizeof(float), .time = 1.0 / 32, .alpha = 0.5, .substeps = 2, .id = 1,
         .result = STF_ERROR_MASS, .name = "rk4", .position = view.position, .velocity = view.velocity, .vector = {1, 2, 0},
+        .guard = {.mode = STF_GUARD_FREEZE, .position_bound = 2e6},
         .def = &a.the_def,
         .the_def = {.dimensions = 2, .integrator = &a.the_integrator, .step = 1, .gravity = {1, 2, 0}, .allocator = allocator},
         .particle = &a.the_particle, .the_particle = {{1, 2, 0}, {3, 4, 0}, 1, 2},
@@ -664,6 +681,8 @@ static uint64_t hash_world(uint64_t hash, const stf_world *of)
     const stf_particles view = stf_world_view(of);
     const size_t lanes = (view.count + view.stride - 1) / view.stride * view.stride;
     const size_t sizes[] = {stf_world_save_size(of), stf_world_snapshot_size(of), memory.blocks, memory.bytes};
+    const stf_guard guard = stf_world_guard(of);
+    const double watched[] = {guard.mode, guard.interval, guard.position_bound, guard.velocity_bound};
 
     hash = hash_bytes(hash, &seen, sizeof seen);
     hash = hash_bytes(hash, &view.position, sizeof view.position);
@@ -671,6 +690,7 @@ static uint64_t hash_world(uint64_t hash, const stf_world *of)
     hash = hash_bytes(hash, view.velocity, lanes * view.dimensions * sizeof(stf_real));
     hash = hash_bytes(hash, view.inverse_mass, lanes * sizeof(stf_real));
     hash = hash_bytes(hash, sizes, sizeof sizes);
+    hash = hash_bytes(hash, watched, sizeof watched);
     return stf_world_save(of, bytes, sizeof bytes) ? hash : hash_bytes(hash, bytes, sizes[0]);
 }
 
