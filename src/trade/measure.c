@@ -236,6 +236,7 @@ stf_result stf_trade_begin(const stf_trade_def *def, stf_trade_row *rows, stf_tr
     const unsigned repeats = def->repeats > 0 ? def->repeats : DEFAULT_REPEATS;
     if (count > (SIZE_MAX / 2 - sizeof(job)) / sizeof(double) / repeats)
         return STF_ERROR_MEMORY;
+    /* A list of pointers is kept as such; NOLINTNEXTLINE(bugprone-sizeof-expression) */
     const size_t bytes = sizeof(job) + count * repeats * sizeof(double) + def->integrator_count * sizeof *def->integrators +
                          def->steps_count * sizeof *def->steps;
     job *j = stf_allocator_allocate(&allocator, bytes);
