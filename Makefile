@@ -124,6 +124,8 @@ help:
 	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
+	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; make deps ALSO=analyse installs them"
+	@echo "make mutants         how many of 200 one-token faults the tests notice; MUTANTS=400 SEED=2 FILES='src/clock.c'"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -246,11 +248,60 @@ $(BUILD)/f64/tests/%.o: tests/%.c Makefile | need-cmocka
 
 $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -pthread -o $@
 
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -pthread -o $@
+
+# ---- analysis: tools that see what tests do not ------------------------------------------------------------------------------
+
+# The analysers read src and include; valgrind and the thread sanitizer run the tests. .cppcheck and .clang-tidy say what is off.
+LIBRARY_SOURCES := $(sort $(ONCE_SOURCES) $(TWICE_SOURCES))
+PROCESSORS      := $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+VALGRIND         = valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=all --suppressions=.valgrind
+VALGRIND_TESTS   = $(filter-out test_stability test_trade,$(TEST_NAMES))
+VALGRIND_RUNS    = $(foreach precision,f32 f64,$(VALGRIND_TESTS:%=build/valgrind/tests/%-$(precision)))
+
+.PHONY: analyse cppcheck tidy analyser valgrind tsan
+
+analyse: cppcheck tidy analyser tsan valgrind
+
+need-tool-%:
+	@command -v $* >/dev/null || { echo "steadfast: $* is not here: type: make deps ALSO=analyse" >&2; exit 1; }
+
+cppcheck: need-tool-cppcheck
+	cppcheck --quiet --error-exitcode=1 --enable=all --inline-suppr --suppressions-list=.cppcheck --std=c99 --language=c \
+	    -USTF_VARIANT -Iinclude src
+
+# A file at a time: the analyser of clang 14 takes every va_list but that of its first file for uninitialised.
+tidy: need-tool-clang-tidy
+	printf '%s\n' $(LIBRARY_SOURCES) | xargs -P $(PROCESSORS) -I {} clang-tidy --quiet {} -- -std=c99 -Iinclude $(HAS_ISAS)
+
+# gcc alone has it. What it follows is the same for every instruction set.
+analyser: need-tool-gcc
+	$(MAKE) library CC=gcc BUILD=build/analyser ISAS= OPTIMISE='-O1 -fanalyzer' WERROR=1
+
+# Valgrind knows no AVX-512. Left out are two tests that take it a quarter of an hour each: VALGRIND_TESTS=test_trade runs one.
+valgrind: need-tool-valgrind
+	$(MAKE) BUILD=build/valgrind ISAS='$(filter avx2,$(ISAS))' OPTIMISE='-O2 -g' $(VALGRIND_RUNS)
+	for test in $(VALGRIND_RUNS); do $(VALGRIND) $$test || exit 1; done
+
+tsan: need-tool-clang
+	$(MAKE) CC=clang BUILD=build/tsan OPTIMISE='-O1 -g -fsanitize=thread' LDFLAGS=-fsanitize=thread \
+	    build/tsan/tests/test_threads-f32 build/tsan/tests/test_threads-f64
+	build/tsan/tests/test_threads-f32
+	build/tsan/tests/test_threads-f64
+
+# ---- mutants: do the tests notice faults? ------------------------------------------------------------------------------------
+
+MUTANTS = 200# how many faults
+SEED    = 1# which
+AGAIN   =# a list of faults to try instead, such as build/mutants/survivors
+
+.PHONY: mutants
+mutants: | need-cmocka
+	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" MUTANTS="$(MUTANTS)" SEED="$(SEED)" AGAIN="$(AGAIN)" sh tests/mutants/run.sh $(FILES)
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 
