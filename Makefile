@@ -258,7 +258,6 @@ $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/
 
 # The analysers read src and include; valgrind and the thread sanitizer run the tests. .cppcheck and .clang-tidy say what is off.
 LIBRARY_SOURCES := $(sort $(ONCE_SOURCES) $(TWICE_SOURCES))
-PROCESSORS      := $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 VALGRIND         = valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=all --suppressions=.valgrind
 VALGRIND_TESTS   = $(filter-out test_stability test_trade,$(TEST_NAMES))
 VALGRIND_RUNS    = $(foreach precision,f32 f64,$(VALGRIND_TESTS:%=build/valgrind/tests/%-$(precision)))
@@ -276,19 +275,21 @@ cppcheck: need-tool-cppcheck
 
 # A file at a time: the analyser of clang 14 takes every va_list but that of its first file for uninitialised.
 tidy: need-tool-clang-tidy
-	printf '%s\n' $(LIBRARY_SOURCES) | xargs -P $(PROCESSORS) -I {} clang-tidy --quiet {} -- -std=c99 -Iinclude $(HAS_ISAS)
+	printf '%s\n' $(LIBRARY_SOURCES) | xargs -P "$$(getconf _NPROCESSORS_ONLN)" -I {} \
+	    clang-tidy --quiet {} -- -std=c99 -Iinclude $(HAS_ISAS) \
+	    2>/dev/null # only counts of what stands in the system's headers; findings and errors go to stdout
 
 # gcc alone has it. What it follows is the same for every instruction set.
 analyser: need-tool-gcc
 	$(MAKE) library CC=gcc BUILD=build/analyser ISAS= OPTIMISE='-O1 -fanalyzer' WERROR=1
 
-# Valgrind knows no AVX-512. Left out are two tests that take it a quarter of an hour each: VALGRIND_TESTS=test_trade runs one.
+# Valgrind knows no AVX-512. Left out are the two slowest tests: VALGRIND_TESTS=test_trade runs one.
 valgrind: need-tool-valgrind
 	$(MAKE) BUILD=build/valgrind ISAS='$(filter avx2,$(ISAS))' OPTIMISE='-O2 -g' $(VALGRIND_RUNS)
 	for test in $(VALGRIND_RUNS); do $(VALGRIND) $$test || exit 1; done
 
-tsan: need-tool-clang
-	$(MAKE) CC=clang BUILD=build/tsan OPTIMISE='-O1 -g -fsanitize=thread' LDFLAGS=-fsanitize=thread \
+tsan: need-cmocka
+	$(MAKE) BUILD=build/tsan ISAS= OPTIMISE='-O1 -g -fsanitize=thread' LDFLAGS=-fsanitize=thread \
 	    build/tsan/tests/test_threads-f32 build/tsan/tests/test_threads-f64
 	build/tsan/tests/test_threads-f32
 	build/tsan/tests/test_threads-f64

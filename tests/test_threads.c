@@ -4,6 +4,7 @@
  */
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "scenes/scene.h"
 #include "support/check.h"
@@ -78,6 +79,23 @@ static stf_world *full_world(const stf_integrator *integrator, stf_parallel para
     return world;
 }
 
+/* Particles alone: records have pads. */
+static uint64_t bits_of(const stf_world *world)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+
+    for (size_t i = 0; i < stf_world_count(world); i++) {
+        stf_particle particle;
+        unsigned char bytes[sizeof particle];
+
+        stf_world_get(world, i, &particle);
+        memcpy(bytes, &particle, sizeof bytes);
+        for (size_t k = 0; k < sizeof bytes; k++)
+            hash = (hash ^ bytes[k]) * UINT64_C(0x100000001b3);
+    }
+    return hash;
+}
+
 /* ---- tests ----------------------------------------------------------------------------------------------------------------- */
 
 static uint64_t hash_of_scene(const scene *s, const stf_integrator *integrator, stf_parallel parallel)
@@ -86,7 +104,7 @@ static uint64_t hash_of_scene(const scene *s, const stf_integrator *integrator, 
 
     assert_ok(scene_create(s, &(stf_world_def){.integrator = integrator, .parallel = parallel}, &world));
     assert_ok(stf_world_step(world, TICKS));
-    const uint64_t hash = hash_of(world);
+    const uint64_t hash = bits_of(world);
     stf_world_destroy(world);
     return hash;
 }
@@ -108,7 +126,7 @@ static void every_force_acts_on_threads_as_alone(void **state)
 
         assert_ok(stf_world_step(one, 3));
         assert_ok(stf_world_step(several, 3));
-        assert_true(hash_of(one) == hash_of(several));
+        assert_true(bits_of(one) == bits_of(several));
         stf_world_destroy(one);
         stf_world_destroy(several);
     }
@@ -138,7 +156,7 @@ static void live(void *hashes, unsigned index)
         stf_stability_measure(world, &(stf_stability_def){.accelerations = 25}, &stability);
         stf_world_step(world, 1);
     }
-    ((uint64_t *)hashes)[index] = hash_of(world);
+    ((uint64_t *)hashes)[index] = bits_of(world);
     free(save);
     free(snapshot);
     stf_world_destroy(world);
@@ -202,13 +220,13 @@ static void readers_share_a_world(void **state)
     reading by_one = {.world = world}, at_once = {.world = world};
 
     assert_ok(stf_world_step(world, 1));
-    const uint64_t before = hash_of(world);
+    const uint64_t before = bits_of(world);
     read_all(&by_one, 0);
-    assert_true(by_one.sums[0] != 0 && hash_of(world) == before);
+    assert_true(by_one.sums[0] != 0 && bits_of(world) == before);
     run_on_threads(NULL, COUNT_OF(at_once.sums), read_all, &at_once);
     for (size_t i = 0; i < COUNT_OF(at_once.sums); i++)
         assert_true(at_once.sums[i] == by_one.sums[0]);
-    assert_true(hash_of(world) == before);
+    assert_true(bits_of(world) == before);
     stf_world_destroy(world);
 }
 
