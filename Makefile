@@ -124,7 +124,7 @@ help:
 	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
-	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; make deps ALSO=analyse installs them"
+	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; first make deps ALSO=analyse"
 	@echo "make mutants         how many of 200 one-token faults the tests notice; MUTANTS=400 SEED=2 FILES='src/clock.c'"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
@@ -256,7 +256,7 @@ $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/
 
 # ---- analysis: tools that see what tests do not ------------------------------------------------------------------------------
 
-# The analysers read src and include; valgrind and the thread sanitizer run the tests. .cppcheck and .clang-tidy say what is off.
+# The analysers read src and include; valgrind and the thread sanitizer run tests. Dot files say what is off, and why.
 LIBRARY_SOURCES := $(sort $(ONCE_SOURCES) $(TWICE_SOURCES))
 VALGRIND         = valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=all --suppressions=.valgrind
 VALGRIND_TESTS   = $(filter-out test_stability test_trade,$(TEST_NAMES))

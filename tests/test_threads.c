@@ -13,7 +13,7 @@
 #define TICKS 20
 #define PARTICLES 1000 /* fill several blocks */
 
-/* ---- an engine's threads, in the least that does it ------------------------------------------------------------------------ */
+/* ---- an engine's threads, in the least that does it ---------------------------------------------------------------------- */
 
 typedef struct call {
     pthread_t thread;
@@ -49,7 +49,7 @@ static void run_on_threads(void *user, unsigned tasks, void (*task)(void *contex
 static const stf_parallel threads = {.run = run_on_threads, .tasks = 2 * THREADS};
 static const stf_parallel alone = {.tasks = 0};
 
-/* ---- a world in which every force acts ------------------------------------------------------------------------------------- */
+/* ---- a world in which every force acts ----------------------------------------------------------------------------------- */
 
 static void fill(stf_world *world)
 {
@@ -96,7 +96,7 @@ static uint64_t bits_of(const stf_world *world)
     return hash;
 }
 
-/* ---- tests ----------------------------------------------------------------------------------------------------------------- */
+/* ---- tests --------------------------------------------------------------------------------------------------------------- */
 
 static uint64_t hash_of_scene(const scene *s, const stf_integrator *integrator, stf_parallel parallel)
 {

@@ -91,7 +91,8 @@ FNR == 1 { in_comment = 0; previous = "" }
             at += RLENGTH
             continue
         }
-        if (!match(rest, /^[A-Za-z_][A-Za-z_0-9]*/) && !match(rest, /^(0x[0-9a-fA-F]+|[0-9]+\.?[0-9]*([eE][-+]?[0-9]+)?)[uUlLfF]*/) &&
+        if (!match(rest, /^[A-Za-z_][A-Za-z_0-9]*/) &&
+            !match(rest, /^(0x[0-9a-fA-F]+|[0-9]+\.?[0-9]*([eE][-+]?[0-9]+)?)[uUlLfF]*/) &&
             !match(rest, /^(->|<<=|>>=|<<|>>|\+\+|--|[-+*\/%&|^<>=!]=|&&|\|\|)/))
             RLENGTH = 1
         text = substr(rest, 1, RLENGTH)

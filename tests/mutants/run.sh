@@ -17,7 +17,7 @@ pkg-config --exists cmocka || fail "the tests need cmocka; type: make deps"
 make_in() { tree=$1; shift; $MAKE -s -C "$tree" CC="$CC" OPTIMISE=-O2 ISAS= WARNINGS=-Werror=return-type "$@" >/dev/null 2>&1; }
 
 # Both precisions of these tests.
-binaries() { for test in "$@"; do echo "$build/tests/$test-f64 $build/tests/$test-f32"; done; }
+binaries() { for test in "$@"; do printf '%s\n' "$build/tests/$test-f64" "$build/tests/$test-f32"; done; }
 
 # The tests of a file's part: those are run first. The others follow as fast as they are.
 tests_of_part() {
@@ -46,8 +46,9 @@ try() {
     tree=$work/tree$1 file=$2
     rm -rf "$tree"
     cp -Rp $work/pristine "$tree"
-    awk -v at="$3" -v from="$4" -v size="$5" -v instead="$7" \
-        'NR == at { $0 = substr($0, 1, from - 1) instead substr($0, from + size) } { print }' "$work/pristine/$file" >"$tree/$file"
+    awk -v at="$3" -v from="$4" -v size="$5" -v instead="$7" '
+        NR == at { $0 = substr($0, 1, from - 1) instead substr($0, from + size) }
+        { print }' "$work/pristine/$file" >"$tree/$file"
     was=$(sed -n "$3p" "$work/pristine/$file" | cut -c "$4-$(($4 + $5 - 1))")
     fate=$(fate_of "$tree" "$file")
     printf '%-38s %-10s %-44s %s\n' "$file:$3:$4" "$6" "$was -> $7" "$fate" >>$work/report.$1
@@ -62,7 +63,7 @@ fate_of() {
     make_in "$1" library || { echo "does not compile"; return; }
     if cmp -s "$1/$shared" "$work/pristine/$shared"; then echo "same code"; return; fi
     first=$(binaries $(tests_of_part "$2"))
-    for tests in "$first" "$(awk '{ print $2 }' $work/times)"; do
+    for tests in "$first" "$(awk '{ print $2 }' $work/times | grep -vxF "$first")"; do
         make_in "$1" $tests || { echo "does not link"; return; }
         for test in $tests; do
             cmp -s "$1/$test" "$work/pristine/$test" && continue # it has nothing of this file in it
@@ -74,6 +75,7 @@ fate_of() {
     echo "survived"
 }
 
+[ -z "$AGAIN" ] || again=$(cat "$AGAIN") || fail "there is no list $AGAIN"
 rm -rf $work
 mkdir -p $work/pristine/demo
 cp -R Makefile include src tests $work/pristine
@@ -91,7 +93,7 @@ done
 sort -n $work/unsorted >$work/times
 
 # The list of all faults, shuffled (Fisher and Yates; Park and Miller's random numbers, whole in any awk) and cut.
-if [ -n "$AGAIN" ]; then cat "$AGAIN" || fail "no list $AGAIN"; else
+if [ -n "$AGAIN" ]; then echo "$again"; else
     awk -f tests/mutants/faults.awk $([ $# -gt 0 ] && echo "$@" || find src -name '*.[ch]' | sort) |
     awk -v seed="$SEED" -v count="$MUTANTS" '
         function random(below) { state = state * 16807 % 2147483647; return int(state / 2147483647 * below) }
