@@ -134,6 +134,8 @@ help:
 	@echo "make deps-cross      install the compilers and emulators of other machines for it"
 	@echo "make soak            an hour of simulated play with each integrator: no drift of time, no growth of memory; a minute"
 	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in four minutes"
+	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; first make deps ALSO=analyse"
+	@echo "make mutants         how many of 200 one-token faults the tests notice; MUTANTS=400 SEED=2 FILES='src/clock.c'"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -256,11 +258,61 @@ $(BUILD)/f64/tests/%.o: tests/%.c Makefile | need-cmocka
 
 $(BUILD)/tests/%-f32: $(BUILD)/f32/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f32/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -pthread -o $@
 
 $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/%.o) $(STATIC)
 	@mkdir -p $(@D)
-	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
+	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -pthread -o $@
+
+# ---- analysis: tools that see what tests do not ------------------------------------------------------------------------------
+
+# The analysers read src and include; valgrind and the thread sanitizer run tests. Dot files say what is off, and why.
+LIBRARY_SOURCES := $(sort $(ONCE_SOURCES) $(TWICE_SOURCES))
+VALGRIND         = valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=all --suppressions=.valgrind
+VALGRIND_TESTS   = $(filter-out test_stability test_trade,$(TEST_NAMES))
+VALGRIND_RUNS    = $(foreach precision,f32 f64,$(VALGRIND_TESTS:%=build/valgrind/tests/%-$(precision)))
+
+.PHONY: analyse cppcheck tidy analyser valgrind tsan
+
+analyse: cppcheck tidy analyser tsan valgrind
+
+need-tool-%:
+	@command -v $* >/dev/null || { echo "steadfast: $* is not here: type: make deps ALSO=analyse" >&2; exit 1; }
+
+cppcheck: need-tool-cppcheck
+	cppcheck --quiet --error-exitcode=1 --enable=all --inline-suppr --suppressions-list=.cppcheck --std=c99 --language=c \
+	    -USTF_VARIANT -Iinclude src
+
+# A file at a time: the analyser of clang 14 takes every va_list but that of its first file for uninitialised.
+tidy: need-tool-clang-tidy
+	printf '%s\n' $(LIBRARY_SOURCES) | xargs -P "$$(getconf _NPROCESSORS_ONLN)" -I {} \
+	    clang-tidy --quiet {} -- -std=c99 -Iinclude $(HAS_ISAS) \
+	    2>/dev/null # only counts of what stands in the system's headers; findings and errors go to stdout
+
+# gcc alone has it. What it follows is the same for every instruction set.
+analyser: need-tool-gcc
+	$(MAKE) library CC=gcc BUILD=build/analyser ISAS= OPTIMISE='-O1 -fanalyzer' WERROR=1
+
+# Valgrind knows no AVX-512. Left out are the two slowest tests: VALGRIND_TESTS=test_trade runs one.
+valgrind: need-tool-valgrind
+	$(MAKE) BUILD=build/valgrind ISAS='$(filter avx2,$(ISAS))' OPTIMISE='-O2 -g' $(VALGRIND_RUNS)
+	for test in $(VALGRIND_RUNS); do $(VALGRIND) $$test || exit 1; done
+
+tsan: need-cmocka
+	$(MAKE) BUILD=build/tsan ISAS= OPTIMISE='-O1 -g -fsanitize=thread' LDFLAGS=-fsanitize=thread \
+	    build/tsan/tests/test_threads-f32 build/tsan/tests/test_threads-f64
+	build/tsan/tests/test_threads-f32
+	build/tsan/tests/test_threads-f64
+
+# ---- mutants: do the tests notice faults? ------------------------------------------------------------------------------------
+
+MUTANTS = 200# how many faults
+SEED    = 1# which
+AGAIN   =# a list of faults to try instead, such as build/mutants/survivors
+
+.PHONY: mutants
+mutants: | need-cmocka
+	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" MUTANTS="$(MUTANTS)" SEED="$(SEED)" AGAIN="$(AGAIN)" sh tests/mutants/run.sh $(FILES)
 
 # ---- extremes: every integrator at the ends of its world, as a matrix --------------------------------------------------------
 

@@ -15,9 +15,8 @@ static void *default_allocate(void *user, size_t size, size_t alignment)
     if (!taken)
         return NULL;
 
-    const uintptr_t lowest = (uintptr_t)taken + sizeof(void *);
-    const uintptr_t aligned = (lowest + alignment - 1) & ~(uintptr_t)(alignment - 1);
-    void **handed_out = (void **)aligned;
+    char *lowest = (char *)taken + sizeof(void *);
+    void **handed_out = (void **)(void *)(lowest + (-(uintptr_t)lowest & (alignment - 1)));
 
     handed_out[-1] = taken;
     return handed_out;

@@ -34,7 +34,7 @@ static const struct {
 
 const stf_kernels *stf_kernels_choose(void)
 {
-    const char *wanted = getenv("STEADFAST_ISA");
+    const char *wanted = getenv("STEADFAST_ISA"); /* only read here; NOLINT(concurrency-mt-unsafe) */
 
     for (size_t i = 0; wanted && i < SET_COUNT; i++)
         if (strcmp(wanted, sets[i].kernels->name) == 0 && sets[i].runs_here())

@@ -734,9 +734,9 @@ static void a_step_shorter_than_the_remainder_keeps_alpha_below_1(void **state)
     assert_int_equal(advance(&clock, 0.75), 0);
     assert_ok(stf_clock_set_step(&clock, 0.25));
     assert_true(clock.remainder == 0.75);
-    assert_true(stf_clock_alpha(&clock) >= 0.999 && stf_clock_alpha(&clock) < 1);
+    assert_true(stf_clock_alpha(&clock) == 1 - DBL_EPSILON / 2);
     assert_ok(stf_clock_set_step(&clock, 0.75));
-    assert_true(stf_clock_alpha(&clock) >= 0.999 && stf_clock_alpha(&clock) < 1);
+    assert_true(stf_clock_alpha(&clock) == 1 - DBL_EPSILON / 2);
     assert_ok(stf_clock_set_step(&clock, 1.5));
     assert_true(stf_clock_alpha(&clock) == 0.5);
     assert_ok(stf_clock_set_step(&clock, 0.25));

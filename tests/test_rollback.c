@@ -180,6 +180,36 @@ static void forces_that_were_added_since_go(void **state)
     assert_int_equal(memory.blocks, 0);
 }
 
+static void push_nothing(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)record_count, (void)particles, (void)time;
+}
+
+/* Sizes are compared with 0 in many places: this one is as near as it gets. */
+static void a_record_of_one_byte_is_kept(void **state)
+{
+    (void)state;
+    static const stf_force force = {.name = "one byte", .record_size = 1, .apply = push_nothing, .fields = "1"};
+    stf_world *world = make_world((stf_world_def){.step = 1});
+    stf_force_id id;
+    size_t count;
+
+    assert_ok(stf_world_add_force(world, &force, &(uint8_t){7}, 1, &id));
+    moment before = snapshot_of(world);
+    for (int load = 0; load < 2; load++) {
+        assert_ok(stf_world_set_force(world, id, &(uint8_t){8}, 1));
+        assert_false(saved_is(before.then, world));
+        if (load)
+            assert_ok(stf_world_load(world, before.then.bytes, before.then.size, NULL));
+        else
+            assert_ok(stf_world_restore(world, before.bytes, before.size));
+        assert_int_equal(*(const uint8_t *)stf_world_force_records(world, id, &count), 7);
+        assert_int_equal(count, 1);
+    }
+    forget(&before);
+    stf_world_destroy(world);
+}
+
 static void assert_not_restored(stf_world *world, const moment *m, size_t size)
 {
     saved before = save_of(world);
@@ -277,6 +307,7 @@ int main(void)
         cmocka_unit_test(a_world_that_grew_or_shrank_is_what_it_was),
         cmocka_unit_test(another_integrator_is_undone),
         cmocka_unit_test(forces_that_were_added_since_go),
+        cmocka_unit_test(a_record_of_one_byte_is_kept),
         cmocka_unit_test(what_is_no_snapshot_of_it_is_refused),
         cmocka_unit_test(a_force_without_records_is_restored),
     };

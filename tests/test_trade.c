@@ -489,10 +489,13 @@ static stf_result build_work(void *user, stf_world **world)
     return result ? result : stf_world_add_force(*world, &worker, NULL, 0, NULL);
 }
 
+#define INTERRUPTED 300 /* readings: once something else runs for a second */
+
 static double worked_seconds(void *user)
 {
     (void)user;
-    return 1e-6 * (double)work + READING * (double)++readings;
+    readings++;
+    return 1e-6 * (double)work + READING * (double)readings + (readings > INTERRUPTED);
 }
 
 static size_t progress_done, progress_total;

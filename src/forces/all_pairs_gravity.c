@@ -59,6 +59,7 @@ STF_INLINE void pull_lanes(unsigned dimensions, bool both, size_t stride, const 
             const stf_real apart = dx * dx + dy * dy + dz * dz, square = softening_square + apart;
             const stf_real reciprocal = 1 / stf_sqrt(square), inverse = apart > 0 ? reciprocal : 0;
             const stf_real ux = dx * inverse, uy = dy * inverse, uz = dz * inverse;
+            /* All lanes of a tile have a strength; NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
             const stf_real by_p = p_strength * inverse * inverse, by_lane = strength[i] * inverse * inverse;
 
             a[i] += by_p * ux;

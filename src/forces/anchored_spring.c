@@ -72,7 +72,8 @@ static void anchored_apply(const void *records, size_t record_count, const stf_p
         const size_t i = springs[s].particle - block->first;
         stf_real d[STF_DIMENSIONS_MAX], square = 0, w_dot_d = 0;
 
-        for (unsigned k = 0; k < block->dimensions; k++) {
+        for (unsigned k = 0; k < block->dimensions; k++) { /* 3 at most */
+            /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
             d[k] = block->position[k * block->stride + i] - anchor[k];
             square += d[k] * d[k];
             w_dot_d += block->velocity[k * block->stride + i] * d[k];

@@ -35,7 +35,7 @@
 #define BISECTIONS 24
 
 /* Log of the largest element of a power, below which its norm is below 1: -2 log STATE_MAX. */
-#define SMALL -5.0
+#define SMALL (-5.0)
 
 /*
  * Growth that sets in as a low power of dt is there at every dt, and only drowned in roundings below: at twice the dt it is
@@ -47,7 +47,7 @@ typedef struct linear {
     stf_system system; /* first, so that accelerate finds the rest */
     size_t n;
     const double *a, *b;
-    unsigned char memory[ARRAYS * STF_RUN_MAX * sizeof(stf_real) + ALIGNMENT];
+    unsigned char memory[sizeof(stf_real) * STF_RUN_MAX * ARRAYS + ALIGNMENT];
 } linear;
 
 static void accelerate(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
@@ -167,7 +167,7 @@ bool stf_run_grows(const stf_integrator *integrator, size_t n, const double *a, 
     begin(&l, integrator, n, a, b);
     system->history_stale = true;
     for (size_t i = 0; i < n; i++) {
-        system->position[i] = (stf_real)(1 + 0.1 * (double)(i % 7)) * (i % 3 ? 1 : -1);
+        system->position[i] = (stf_real)((1 + 0.1 * (double)(i % 7)) * (i % 3 ? 1 : -1));
         for (int k = 0; k < integrator->history_arrays; k++)
             system->history[k][i] = (stf_real)NAN;
     }
@@ -181,5 +181,5 @@ bool stf_run_grows(const stf_integrator *integrator, size_t n, const double *a, 
             return !(size < 1);
         largest[4 * step / RUN_STEPS] = fmax(largest[4 * step / RUN_STEPS], size);
     }
-    return log(largest[3] / largest[1]) > RUN_STEPS / 2 * RUN_RATE;
+    return log(largest[3] / largest[1]) > RUN_RATE * RUN_STEPS / 2;
 }

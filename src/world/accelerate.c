@@ -173,7 +173,7 @@ static void whole_part(void *context, unsigned part)
 }
 
 static void accelerate(stf_system *system, double time, const stf_real *position, const stf_real *velocity,
-                       stf_real *acceleration)
+                       stf_real *acceleration) /* what q keeps is written to; NOLINT(readability-non-const-parameter) */
 {
     const stf_range *range = (const stf_range *)system;
     const stf_world *world = range->world;

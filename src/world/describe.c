@@ -29,9 +29,9 @@ static void append_row(text *t, const char *name, unsigned long long passes, dou
     char pass_text[32] = "-", byte_text[32] = "-";
 
     if (passes > 0)
-        snprintf(pass_text, sizeof pass_text, "%llu", passes);
+        (void)snprintf(pass_text, sizeof pass_text, "%llu", passes);
     if (bytes > 0)
-        snprintf(byte_text, sizeof byte_text, "%.1f", bytes);
+        (void)snprintf(byte_text, sizeof byte_text, "%.1f", bytes);
     append(t, "  %-32s %13s %16s%s%s\n", name, pass_text, byte_text, remark[0] ? "   " : "", remark);
 }
 
@@ -108,7 +108,7 @@ static void append_force(text *t, const stf_world *world, const stf_added_force 
     const double bytes = world->count ? (double)added->bytes / (double)world->count : 0;
     char remark[96];
 
-    snprintf(remark, sizeof remark, "%s, %zu record%s%s%s%s%s%s", force->kind == STF_LINK ? "link" : "field",
+    (void)snprintf(remark, sizeof remark, "%s, %zu record%s%s%s%s%s%s", force->kind == STF_LINK ? "link" : "field",
              added->record_count, plural(added->record_count), force->depends_on ? ", of" : "",
              force->depends_on & STF_ON_POSITION ? " x" : "",
              force->depends_on & STF_ON_VELOCITY ? " v" : "", force->depends_on & STF_ON_TIME ? " t" : "",

@@ -161,9 +161,9 @@ static stf_result get_force(stf_reader *r, const stf_world *world, const saved *
 /* The rest of the buffer is these arrays, no more and no less, and holds what a world may hold. */
 static stf_result check_arrays(stf_reader r, const saved *s, const stf_kept *kept, size_t arrays)
 {
-    size_t reals = 0;
+    size_t reals = kept[0].rows;
 
-    for (size_t k = 0; k < arrays; k++)
+    for (size_t k = 1; k < arrays; k++)
         reals += kept[k].rows;
     if (s->count > r.left / (reals * sizeof(stf_real)) || s->count * reals * sizeof(stf_real) != r.left)
         return STF_ERROR_ALTERED;
@@ -215,13 +215,12 @@ static void release_others(const stf_world *world, stf_added_force *from, const 
 static stf_result load_body(stf_reader *r, stf_world *world, const saved *s, stf_added_force *loaded,
                             stf_mismatch *mismatch)
 {
-    const size_t forces_bytes = world->force_count * sizeof *loaded;
     stf_kept kept[STF_KEPT_MAX];
     const size_t arrays = stf_storage_kept(world, kept);
     stf_result bad = STF_OK;
 
-    if (forces_bytes > 0)
-        memcpy(loaded, world->forces, forces_bytes);
+    for (size_t n = 0; n < world->force_count; n++)
+        loaded[n] = world->forces[n];
     for (size_t n = 0; n < world->force_count && !bad; n++)
         bad = get_force(r, world, s, n, &loaded[n], mismatch);
     if (!bad)
@@ -234,8 +233,8 @@ static stf_result load_body(stf_reader *r, stf_world *world, const saved *s, stf
     }
 
     release_others(world, world->forces, loaded);
-    if (forces_bytes > 0)
-        memcpy(world->forces, loaded, forces_bytes);
+    for (size_t n = 0; n < world->force_count; n++)
+        world->forces[n] = loaded[n];
     put_head(world, s);
     put_arrays(r, world);
     return STF_OK;
@@ -260,9 +259,9 @@ stf_result stf_world_load(stf_world *world, const void *buffer, size_t size, stf
     if (bad)
         return bad;
 
-    const size_t bytes = world->force_count * sizeof(stf_added_force);
-    stf_added_force *loaded = bytes > 0 ? stf_allocator_allocate(&world->allocator, bytes) : NULL;
-    if (bytes > 0 && !loaded)
+    const size_t bytes = (world->force_count + 1) * sizeof(stf_added_force); /* of no force too: some, not none */
+    stf_added_force *loaded = stf_allocator_allocate(&world->allocator, bytes);
+    if (!loaded)
         return STF_ERROR_MEMORY;
     bad = load_body(&r, world, &s, loaded, mismatch);
     stf_allocator_release(&world->allocator, loaded, bytes);

@@ -23,7 +23,7 @@ static void put_vector(const stf_world *world, stf_real *array, size_t index, st
     const stf_real components[STF_DIMENSIONS_MAX] = {vector.x, vector.y, vector.z};
     stf_real *at = array + stf_world_offset(world, index);
 
-    for (unsigned d = 0; d < world->dimensions; d++)
+    for (unsigned d = 0; d < world->dimensions; d++) /* 3 at most; NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
         at[d * world->storage.stride] = components[d];
 }
 
@@ -110,7 +110,7 @@ static bool are_sound(const stf_world *world, size_t n, const stf_particle *part
         bad |= reals[i] - reals[i] != 0;
     for (size_t i = 0; i < n; i++) {
         const stf_real w = particles[i].inverse_mass, radius = particles[i].radius;
-        bad |= (w != 0) & !(w >= STF_REAL_MIN);
+        bad |= (w != 0) & (w < STF_REAL_MIN);
         bad |= !((radius >= 0) & (radius <= radius_max));
     }
     for (size_t i = 0; i < n && world->dimensions < STF_DIMENSIONS_MAX; i++) {
@@ -197,6 +197,18 @@ stf_result stf_world_add(stf_world *world, const stf_particle *particle, size_t 
     return stf_world_add_many(world, particle, 1, index);
 }
 
+static stf_particle get_particle(const stf_world *world, size_t index)
+{
+    const stf_storage *storage = &world->storage;
+
+    return (stf_particle){
+        .position = get_vector(world, storage->position, index),
+        .velocity = get_vector(world, storage->velocity, index),
+        .inverse_mass = storage->inverse_mass[index],
+        .radius = storage->radius ? storage->radius[index] : 0,
+    };
+}
+
 stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *particle)
 {
     if (!world || !particle)
@@ -204,13 +216,7 @@ stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *par
     if (index >= world->count)
         return STF_ERROR_PARTICLE;
 
-    const stf_storage *storage = &world->storage;
-    *particle = (stf_particle){
-        .position = get_vector(world, storage->position, index),
-        .velocity = get_vector(world, storage->velocity, index),
-        .inverse_mass = storage->inverse_mass[index],
-        .radius = storage->radius ? storage->radius[index] : 0,
-    };
+    *particle = get_particle(world, index);
     return STF_OK;
 }
 
@@ -241,9 +247,8 @@ stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
 
     const size_t last = world->count - 1;
     const stf_storage *storage = &world->storage;
-    stf_particle particle;
+    const stf_particle particle = get_particle(world, last);
 
-    stf_world_get(world, last, &particle);
     put_particle(world, index, &particle);
     if (storage->previous)
         move_vector(world, storage->previous, last, index);
