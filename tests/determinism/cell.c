@@ -129,7 +129,8 @@ cell cell_run_here(const cell_run *run, size_t index, size_t integrator)
 {
     const size_t demos = count_of(scenes);
     const scene *s = index < demos ? scenes[index] : crowds[index - demos];
-    const stf_world_def def = {.integrator = stf_integrators[integrator], .keep_previous = true, .parallel = run->parallel};
+    const stf_world_def def = {.integrator = stf_integrators[integrator], .keep_previous = true,
+                               .compensated = crowd_is_compensated(s), .parallel = run->parallel};
     cell made = {.scene_name = s->name, .integrator_name = def.integrator->name, .precision = PRECISION,
                  .ticks = index < demos ? run->ticks : run->ticks / CROWD_SHARE};
     stf_world *world;

@@ -85,4 +85,11 @@ static const scene crowd_fields = {.name = "fields", .dimensions = 2, .gravity =
 static const scene crowd_net = {.name = "net", .dimensions = 3, .step = 1.0 / 60, .populate = net};
 static const scene crowd_cluster = {.name = "cluster", .dimensions = 3, .step = 1.0 / 60, .populate = cluster};
 
-const scene *const crowds[] = {&crowd_flight, &crowd_fields, &crowd_net, &crowd_cluster, NULL};
+static const scene crowd_flight_rests = {.name = "flight_rests", .dimensions = 3, .gravity = {0, -9, 1}, .step = 1.0 / 60,
+                                         .populate = flight};
+static const scene crowd_net_rests = {.name = "net_rests", .dimensions = 3, .step = 1.0 / 60, .populate = net};
+
+const scene *const crowds[] = {&crowd_flight, &crowd_fields, &crowd_net, &crowd_cluster, &crowd_flight_rests, &crowd_net_rests,
+                               NULL};
+
+bool crowd_is_compensated(const scene *crowd) { return crowd == &crowd_flight_rests || crowd == &crowd_net_rests; }

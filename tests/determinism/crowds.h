@@ -6,6 +6,7 @@
 
 #ifdef STF_DOUBLE
 #define crowds crowds_f64
+#define crowd_is_compensated crowd_is_compensated_f64
 #endif
 
 /* They are stepped this part of the ticks of the demo's scenes. */
@@ -13,5 +14,8 @@
 
 /* NULL-terminated. */
 extern const scene *const crowds[];
+
+/* Whether its world keeps rests. */
+bool crowd_is_compensated(const scene *crowd);
 
 #endif
