@@ -270,6 +270,26 @@ static void ids_are_those_of_the_saved_world(void **state)
     stf_world_destroy(world);
 }
 
+/* An id is never used again, and never 0: behind the last there is none. */
+static void after_the_last_id_no_force_is_added(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.integrator = &stf_rk4});
+    saved s = save_of(world);
+    stf_force_id id = 0;
+
+    put(s.bytes + AT_NAME + 4 + strlen("rk4"), UINT32_MAX - 1, 4);
+    sign(s);
+    assert_ok(stf_world_load(world, s.bytes, s.size, NULL));
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, NULL, 0, &id));
+    assert_true(id == UINT32_MAX);
+    assert_ok(stf_world_remove_force(world, id));
+    assert_refused(stf_world_add_force(world, &stf_force_linear_drag, NULL, 0, NULL), STF_ERROR_MEMORY);
+    assert_int_equal(stf_world_force_at(world, 0), 0);
+    saved_free(&s);
+    stf_world_destroy(world);
+}
+
 /* Loading these bytes, out of memory of exactly their size, is refused so and changes nothing. */
 static stf_result refusal(stf_world *world, saved before, const unsigned char *bytes, size_t size)
 {
@@ -688,6 +708,7 @@ int main(void)
         cmocka_unit_test(a_busy_world_goes_on_with_the_same_bits_from_every_tick),
         cmocka_unit_test(a_world_grows_and_shrinks_to_what_is_loaded),
         cmocka_unit_test(ids_are_those_of_the_saved_world),
+        cmocka_unit_test(after_the_last_id_no_force_is_added),
         cmocka_unit_test(every_truncation_is_refused_and_changes_nothing),
         cmocka_unit_test(every_altered_byte_is_refused_and_changes_nothing),
         cmocka_unit_test(lies_with_a_fitting_checksum_do_no_harm),
