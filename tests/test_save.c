@@ -631,6 +631,21 @@ static void what_can_not_be_saved_is_refused(void **state)
     stf_world_destroy(world);
 }
 
+/* Ticks of the longest step are soon past the largest double; in float they never are. */
+static void a_world_at_no_finite_time_is_not_saved(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = (double)REAL_MAX});
+    unsigned char bytes[256];
+
+    assert_ok(stf_world_step(world, 4));
+    assert_ok(stf_world_set_step(world, 1));
+    const stf_result result = stf_world_save(world, bytes, sizeof bytes);
+    assert_refused(result, isfinite(stf_world_time(world)) ? STF_OK : STF_ERROR_NOT_FINITE);
+    assert_true(result || stf_world_load(world, bytes, stf_world_save_size(world), NULL) == STF_OK);
+    stf_world_destroy(world);
+}
+
 static void fields_have_to_make_up_the_record(void **state)
 {
     (void)state;
@@ -717,6 +732,7 @@ int main(void)
         cmocka_unit_test(a_long_name_is_cut_off),
         cmocka_unit_test(records_with_pointers_stay_as_they_are),
         cmocka_unit_test(what_can_not_be_saved_is_refused),
+        cmocka_unit_test(a_world_at_no_finite_time_is_not_saved),
         cmocka_unit_test(fields_have_to_make_up_the_record),
         cmocka_unit_test(without_memory_nothing_changes),
     };
