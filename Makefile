@@ -252,6 +252,40 @@ $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/
 	@mkdir -p $(@D)
 	$(say)$(LINK) $^ $(CMOCKA_LIBS) -lm -o $@
 
+# ---- fuzzing: tests/README.md says what is fuzzed, tests/fuzz/run.sh builds and runs it --------------------------------------
+
+FUZZ_SECONDS = 60# make fuzz: s for each target, precision and fuzzer
+FUZZ_ENGINE  =# -fsanitize=fuzzer: linked with a fuzzer; else with replay.c, which takes inputs from files
+FUZZ_SHARED := tests/fuzz/fuzz.c tests/fuzz/subjects.c tests/fuzz/model.c $(if $(FUZZ_ENGINE),,tests/fuzz/replay.c)
+FUZZ_calls  := tests/fuzz/calls.c $(wildcard tests/fuzz/calls/*.c)
+FUZZ_buffers := tests/fuzz/buffers.c
+FUZZ        := $(foreach p,f32 f64,$(BUILD)/fuzz/calls-$(p) $(BUILD)/fuzz/buffers-$(p))
+
+.PHONY: fuzz fuzz-targets fuzz-coverage
+fuzz:
+	@MAKE="$(MAKE_COMMAND)" FUZZ_SECONDS=$(FUZZ_SECONDS) sh tests/fuzz/run.sh
+
+fuzz-coverage:
+	@MAKE="$(MAKE_COMMAND)" sh tests/fuzz/coverage.sh
+
+fuzz-targets: $(FUZZ)
+
+$(BUILD)/f32/tests/fuzz/%.o: tests/fuzz/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -c $< -o $@
+
+$(BUILD)/f64/tests/fuzz/%.o: tests/fuzz/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -DSTF_DOUBLE -c $< -o $@
+
+define fuzz_target
+$(BUILD)/fuzz/$(1)-$(2): $(patsubst %.c,$(BUILD)/$(2)/%.o,$(FUZZ_$(1)) $(FUZZ_SHARED)) $(STATIC)
+	@mkdir -p $$(@D)
+	$$(say)$$(LINK) $(FUZZ_ENGINE) $$^ -lm -o $$@
+
+endef
+$(foreach target,calls buffers,$(foreach p,f32 f64,$(eval $(call fuzz_target,$(target),$(p)))))
+
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 
 bench: $(BENCH)
