@@ -124,6 +124,7 @@ help:
 	@echo "make trade           what each integrator and step costs and how wrong it is, on this machine: tables and diagrams"
 	@echo "make pictures        the README's pictures, anew; prints its table of picks"
 	@echo "make test            all tests"
+	@echo "make fuzz            both fuzz targets, FUZZ_SECONDS=60 with each fuzzer; make fuzz-coverage: what their inputs reach"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -229,7 +230,7 @@ trade: $(TRADE)
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) $(TRADE) library
+test: $(TESTS) $(BENCH) $(TRADE) fuzz-targets library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)

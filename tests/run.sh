@@ -12,6 +12,9 @@ for test in "$@"; do run "$test"; done
 run sh tests/consumer/check.sh "$build"
 for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --check; done
 run sh tests/trade/check.sh "$build"
+for target in calls buffers; do
+    for precision in f32 f64; do run "$build/fuzz/$target-$precision" tests/fuzz/seeds/$target/*; done
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

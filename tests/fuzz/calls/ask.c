@@ -97,7 +97,7 @@ static void claim_positions(const model *m, double alpha, const unsigned char *a
             memcpy(&x, a + at, sizeof x);
             memcpy(&y, b + at, sizeof y);
             claim(memcmp(&x, &y, sizeof x) == 0 || (isnan(x) && isnan(y)));
-            claim((alpha > 0 && alpha < 1) || x == expected || (isnan(x) && isnan(expected)));
+            claim((alpha > 0 && alpha < 1) || (isfinite(expected) ? x == expected : !isfinite(x)));
         }
         for (size_t k = row; k < apart && i + 1 < m->count; k++)
             claim(a[i * apart + k] == 0x77 && b[i * apart + k] == 0x77);
