@@ -255,7 +255,7 @@ $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/
 
 # ---- fuzzing: tests/README.md says what is fuzzed, tests/fuzz/run.sh builds and runs it --------------------------------------
 
-FUZZ_SECONDS = 60# make fuzz: s for each target, precision and fuzzer
+FUZZ_SECONDS = 60# make fuzz: s of each target, precision and fuzzer
 FUZZ_ENGINE  =# -fsanitize=fuzzer: linked with a fuzzer; else with replay.c, which takes inputs from files
 FUZZ_SHARED := tests/fuzz/fuzz.c tests/fuzz/subjects.c tests/fuzz/model.c $(if $(FUZZ_ENGINE),,tests/fuzz/replay.c)
 FUZZ_calls  := tests/fuzz/calls.c $(wildcard tests/fuzz/calls/*.c)
@@ -264,10 +264,10 @@ FUZZ        := $(foreach p,f32 f64,$(BUILD)/fuzz/calls-$(p) $(BUILD)/fuzz/buffer
 
 .PHONY: fuzz fuzz-targets fuzz-coverage
 fuzz:
-	@MAKE="$(MAKE_COMMAND)" FUZZ_SECONDS=$(FUZZ_SECONDS) sh tests/fuzz/run.sh
+	+@MAKE="$(MAKE_COMMAND)" FUZZ_SECONDS=$(FUZZ_SECONDS) sh tests/fuzz/run.sh
 
 fuzz-coverage:
-	@MAKE="$(MAKE_COMMAND)" sh tests/fuzz/coverage.sh
+	+@MAKE="$(MAKE_COMMAND)" sh tests/fuzz/coverage.sh
 
 fuzz-targets: $(FUZZ)
 
