@@ -202,9 +202,11 @@ double model_tick_cost(const model *m)
     double cost = count;
 
     for (size_t f = 0; f < m->force_count; f++) {
-        const stf_force *force = m->forces[f].subject->force;
-        const bool has_pairs = force == &stf_force_all_pairs_gravity;
-        cost += (double)(m->forces[f].count + 1) * (has_pairs ? 1 + count / 4 : 1) * count;
+        const subject *s = m->forces[f].subject;
+        const double records = (double)m->forces[f].count;
+        const bool has_pairs = s->force == &stf_force_all_pairs_gravity, names_particles = s->layout[0] == 'i';
+
+        cost += names_particles ? records + count : (records + 1) * count * (has_pairs ? 1 + count / 8 : 1);
     }
     return count > 0 ? m->substeps * cost / TICKS_A_LOOK : 0;
 }
