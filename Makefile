@@ -136,6 +136,7 @@ help:
 	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in four minutes"
 	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; first make deps ALSO=analyse"
 	@echo "make mutants         how many of 200 one-token faults the tests notice; MUTANTS=400 SEED=2 FILES='src/clock.c'"
+	@echo "make fuzz            both fuzz targets, FUZZ_SECONDS=60 with each fuzzer; make fuzz-coverage: what their inputs reach"
 	@echo "make bench           what a step costs, beside the best plain C: table, CSV and picture, two minutes"
 	@echo "make bench-peers     what other libraries pay for the same work, in five minutes; ROW=flight/Box2D: that row alone"
 	@echo "make deps-peers      install those libraries"
@@ -241,7 +242,7 @@ trade: $(TRADE)
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 # The benchmark's references have to be what the library computes; how fast anything is, no test asks.
-test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes $(SAME_BITS) $(SAME_BITS)-shared library
+test: $(TESTS) $(BENCH) $(TRADE) $(BUILD)/extremes $(SAME_BITS) $(SAME_BITS)-shared fuzz-targets library
 	@CC="$(CC)" MAKE="$(MAKE_COMMAND)" SAN="$(SAN)" sh tests/run.sh $(BUILD) $(TESTS)
 
 need-cmocka: | $(DEPS_FIRST)
@@ -398,6 +399,40 @@ coverage-run: $(TESTS)
 need-gcov: | $(DEPS_FIRST)
 	@command -v gcc >/dev/null && command -v gcov >/dev/null || \
 	    { echo "steadfast: coverage needs gcc and its gcov: type: make deps" >&2; exit 1; }
+
+# ---- fuzzing: tests/README.md says what is fuzzed, tests/fuzz/run.sh builds and runs it --------------------------------------
+
+FUZZ_SECONDS = 60# make fuzz: s of each target, precision and fuzzer
+FUZZ_ENGINE  =# -fsanitize=fuzzer: linked with a fuzzer; else with replay.c, which takes inputs from files
+FUZZ_SHARED := tests/fuzz/fuzz.c tests/fuzz/subjects.c tests/fuzz/model.c $(if $(FUZZ_ENGINE),,tests/fuzz/replay.c)
+FUZZ_calls  := tests/fuzz/calls.c $(wildcard tests/fuzz/calls/*.c)
+FUZZ_buffers := tests/fuzz/buffers.c
+FUZZ        := $(foreach p,f32 f64,$(BUILD)/fuzz/calls-$(p) $(BUILD)/fuzz/buffers-$(p))
+
+.PHONY: fuzz fuzz-targets fuzz-coverage
+fuzz:
+	+@MAKE="$(MAKE_COMMAND)" FUZZ_SECONDS=$(FUZZ_SECONDS) sh tests/fuzz/run.sh
+
+fuzz-coverage:
+	+@MAKE="$(MAKE_COMMAND)" sh tests/fuzz/coverage.sh
+
+fuzz-targets: $(FUZZ)
+
+$(BUILD)/f32/tests/fuzz/%.o: tests/fuzz/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -c $< -o $@
+
+$(BUILD)/f64/tests/fuzz/%.o: tests/fuzz/%.c Makefile
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -DSTF_DOUBLE -c $< -o $@
+
+define fuzz_target
+$(BUILD)/fuzz/$(1)-$(2): $(patsubst %.c,$(BUILD)/$(2)/%.o,$(FUZZ_$(1)) $(FUZZ_SHARED)) $(STATIC)
+	@mkdir -p $$(@D)
+	$$(say)$$(LINK) $(FUZZ_ENGINE) $$^ -lm -o $$@
+
+endef
+$(foreach target,calls buffers,$(foreach p,f32 f64,$(eval $(call fuzz_target,$(target),$(p)))))
 
 # ---- benchmark ---------------------------------------------------------------------------------------------------------------
 

@@ -15,6 +15,9 @@ for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --
 run sh tests/determinism/run.sh test "$build"
 run sh tests/trade/check.sh "$build"
 run "$build/extremes" --check
+for target in calls buffers; do
+    for precision in f32 f64; do run "$build/fuzz/$target-$precision" tests/fuzz/seeds/$target/*; done
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -694,6 +694,31 @@ static void forces_depend_on_exactly_what_they_say(void **state)
         }
 }
 
+static stf_real boundless_drag(const void *records, size_t record_count)
+{
+    (void)record_count;
+    return *(const stf_real *)records;
+}
+
+static const stf_force boundless_force = {.name = "boundless", .record_size = sizeof(stf_real), .drag = boundless_drag};
+
+static void immovable_particles_feel_no_drag_of_a_user_whatever_it_is(void **state)
+{
+    (void)state;
+    const stf_real drags[] = {(stf_real)INFINITY, -(stf_real)INFINITY, (stf_real)NAN};
+
+    for (size_t k = 0; k < COUNT_OF(drags); k++) {
+        stf_world *world = make_world((stf_world_def){.step = 0.5});
+
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity = {2, 0, 0}}, NULL));
+        add_force(world, &boundless_force, &drags[k]);
+        assert_ok(stf_world_step(world, 2));
+        const stf_particle after = particle_of(world, 0);
+        assert_true(after.position.x == 2 && after.velocity.x == 2);
+        stf_world_destroy(world);
+    }
+}
+
 static void immovable_particles_feel_nothing_not_even_infinity(void **state)
 {
     (void)state;
@@ -794,6 +819,7 @@ int main(void)
         cmocka_unit_test(potentials_count_every_block_once),
         cmocka_unit_test(forces_depend_on_exactly_what_they_say),
         cmocka_unit_test(immovable_particles_feel_nothing_not_even_infinity),
+        cmocka_unit_test(immovable_particles_feel_no_drag_of_a_user_whatever_it_is),
         cmocka_unit_test(springs_follow_their_particles_when_others_are_removed),
         cmocka_unit_test(link_forces_keep_momentum),
     };

@@ -271,6 +271,26 @@ static void ids_are_those_of_the_saved_world(void **state)
     stf_world_destroy(world);
 }
 
+/* An id is never used again, and never 0: behind the last there is none. */
+static void after_the_last_id_no_force_is_added(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.integrator = &stf_rk4});
+    saved s = save_of(world);
+    stf_force_id id = 0;
+
+    put(s.bytes + AT_NAME + 4 + strlen("rk4"), UINT32_MAX - 1, 4);
+    sign(s);
+    assert_ok(stf_world_load(world, s.bytes, s.size, NULL));
+    assert_ok(stf_world_add_force(world, &stf_force_linear_drag, NULL, 0, &id));
+    assert_true(id == UINT32_MAX);
+    assert_ok(stf_world_remove_force(world, id));
+    assert_refused(stf_world_add_force(world, &stf_force_linear_drag, NULL, 0, NULL), STF_ERROR_MEMORY);
+    assert_int_equal(stf_world_force_at(world, 0), 0);
+    saved_free(&s);
+    stf_world_destroy(world);
+}
+
 /* Loading these bytes, out of memory of exactly their size, is refused so and changes nothing. */
 static stf_result refusal(stf_world *world, saved before, const unsigned char *bytes, size_t size)
 {
@@ -614,6 +634,21 @@ static void what_can_not_be_saved_is_refused(void **state)
     stf_world_destroy(world);
 }
 
+/* Ticks of the longest step are soon past the largest double; in float they never are. */
+static void a_world_at_no_finite_time_is_not_saved(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = (double)REAL_MAX});
+    unsigned char bytes[256];
+
+    assert_ok(stf_world_step(world, 4));
+    assert_ok(stf_world_set_step(world, 1));
+    const stf_result result = stf_world_save(world, bytes, sizeof bytes);
+    assert_refused(result, isfinite(stf_world_time(world)) ? STF_OK : STF_ERROR_NOT_FINITE);
+    assert_true(result || stf_world_load(world, bytes, stf_world_save_size(world), NULL) == STF_OK);
+    stf_world_destroy(world);
+}
+
 static void fields_have_to_make_up_the_record(void **state)
 {
     (void)state;
@@ -749,6 +784,7 @@ int main(void)
         cmocka_unit_test(a_busy_world_goes_on_with_the_same_bits_from_every_tick),
         cmocka_unit_test(a_world_grows_and_shrinks_to_what_is_loaded),
         cmocka_unit_test(ids_are_those_of_the_saved_world),
+        cmocka_unit_test(after_the_last_id_no_force_is_added),
         cmocka_unit_test(every_truncation_is_refused_and_changes_nothing),
         cmocka_unit_test(every_altered_byte_is_refused_and_changes_nothing),
         cmocka_unit_test(lies_with_a_fitting_checksum_do_no_harm),
@@ -757,6 +793,7 @@ int main(void)
         cmocka_unit_test(a_long_name_is_cut_off),
         cmocka_unit_test(records_with_pointers_stay_as_they_are),
         cmocka_unit_test(what_can_not_be_saved_is_refused),
+        cmocka_unit_test(a_world_at_no_finite_time_is_not_saved),
         cmocka_unit_test(fields_have_to_make_up_the_record),
         cmocka_unit_test(without_memory_nothing_changes),
         cmocka_unit_test(every_cut_with_a_fitting_checksum_is_refused),

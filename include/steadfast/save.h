@@ -36,8 +36,8 @@ STF_API size_t stf_world_save_size(const stf_world *world);
 /*
  * Writes the world into buffer[size]: the first stf_world_save_size bytes of it, the same on every machine for the same world,
  * in a format with a version, the precision and a checksum (CRC-32C). Records are written as their force's `fields` say.
- * Errors: BUFFER (too small), UNSAVABLE (a force has records and no fields), NOT_FINITE (a position, velocity or previous
- * position: it would not load). Cost: some 150 ns a particle; no allocation.
+ * Errors: BUFFER (too small), UNSAVABLE (a force has records and no fields), NOT_FINITE (a position, velocity, previous
+ * position, or the time when the step was set: it would not load). Cost: some 150 ns a particle; no allocation.
  */
 STF_API stf_result stf_world_save(const stf_world *world, void *buffer, size_t size);
 

@@ -112,8 +112,8 @@ typedef uint32_t stf_force_id;
 /*
  * Adds a force with a copy of its records[record_count]. The descriptor has to outlive the world. A force without
  * parameters takes NULL and 0; so does one whose records are still to come. The id goes to *id unless that is NULL. Errors:
- * DESCRIPTOR, PARAMETERS, PARTICLE (a record names one that is not there), DIMENSIONS, NOT_FINITE, MEMORY. Cost: an allocation;
- * for the first link force also the integrator's work arrays for all particles.
+ * DESCRIPTOR, PARAMETERS, PARTICLE (a record names one that is not there), DIMENSIONS, NOT_FINITE, MEMORY (also where all ids
+ * have been used). Cost: an allocation; for the first link force also the integrator's work arrays for all particles.
  */
 STF_API stf_result stf_world_add_force(stf_world *world, const stf_force *force, const void *records,
                                        size_t record_count, stf_force_id *id);

@@ -32,7 +32,8 @@ static stf_real drag_of(const stf_world *world)
         if (added->acting->drag && stf_force_acts(added))
             sum += added->acting->drag(added->records, added->record_count);
     }
-    return sum < STF_REAL_MAX ? sum : STF_REAL_MAX; /* so that 0 times it is 0, for what has no finite mass */
+    /* finite, so that 0 times it is 0, for what has no finite mass */
+    return sum < -STF_REAL_MAX ? -STF_REAL_MAX : sum < STF_REAL_MAX ? sum : STF_REAL_MAX;
 }
 
 void stf_flight_start(stf_flight *flight, const stf_world *world)

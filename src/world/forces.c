@@ -125,6 +125,8 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
         return STF_ERROR_NULL;
     if (!is_force(force))
         return STF_ERROR_DESCRIPTOR;
+    if (world->last_force_id == UINT32_MAX)
+        return STF_ERROR_MEMORY;
 
     stf_added_force added = {.force = force, .acting = stf_kernels_force(world->kernels, force)};
     stf_result bad = check_records(world, force, records, record_count);

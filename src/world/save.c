@@ -119,6 +119,8 @@ static stf_result check_world(const stf_world *world)
     for (size_t i = 0; i < world->force_count; i++)
         if (world->forces[i].record_count > 0 && !world->forces[i].force->fields)
             return STF_ERROR_UNSAVABLE;
+    if (!isfinite(world->step_start_time))
+        return STF_ERROR_NOT_FINITE;
     for (size_t k = 0; k < arrays && !bad; k++)
         bad = check_array(world, &kept[k]);
     return bad;
