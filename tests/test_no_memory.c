@@ -246,7 +246,8 @@ static stf_result trade(trade_scene *which, stf_trade_row *rows)
     if (!result)
         result = stf_trade(&(stf_trade_def){.build = trade_scene_build, .user = which, .reference = reference,
                                             .integrators = stf_integrators, .integrator_count = 2, .steps = steps,
-                                            .steps_count = 1, .repeats = 2, .seconds = seconds_that_grow, .allocator = allocator},
+                                            .steps_count = 1, .repeats = 2, .seconds = seconds_that_grow,
+                                            .allocator = allocator},
                            rows);
     stf_trade_reference_destroy(reference);
     return result;

@@ -741,7 +741,8 @@ static void every_cut_with_a_fitting_checksum_is_refused(void **state)
 static void a_force_of_no_records_has_none_in_a_save(void **state)
 {
     (void)state;
-    static const stf_force pointers = {.name = "pointers", .record_size = sizeof(int *), .apply = blow, .fields = STF_NOT_SAVED};
+    static const stf_force pointers = {.name = "pointers", .record_size = sizeof(int *), .apply = blow,
+                                       .fields = STF_NOT_SAVED};
     const stf_force *const forces[] = {&idle_link, &pointers};
 
     for (size_t i = 0; i < COUNT_OF(forces); i++) {
@@ -750,7 +751,7 @@ static void a_force_of_no_records_has_none_in_a_save(void **state)
         assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
         add_force(world, forces[i], NULL);
         saved s = save_of(world), told = copy_of(s);
-        put(told.bytes + s.size - 4 - 3 * sizeof(stf_real) - 8, 1, 8); /* before position, velocity, inverse mass and checksum */
+        put(told.bytes + s.size - 4 - 3 * sizeof(stf_real) - 8, 1, 8); /* before position, velocity, inverse mass, checksum */
         sign(told);
         assert_refused(refusal(world, s, told.bytes, told.size), STF_ERROR_ALTERED);
         assert_ok(refusal(world, s, s.bytes, s.size));
