@@ -5,7 +5,7 @@ shift
 passed=0 failed=0
 
 run() {
-    if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $*"; fi
+    if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $*" | cut -c 1-120; fi
 }
 
 for test in "$@"; do run "$test"; done

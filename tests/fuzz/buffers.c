@@ -68,7 +68,8 @@ static buffer save_of(const stf_world *world)
 static stf_world *make_world(const uint8_t kind[3], ration *r, bool has_forces)
 {
     const unsigned how = kind[2];
-    const stf_world_def def = {.dimensions = 1 + kind[0] % 3, .keep_previous = (kind[0] & 64) != 0,
+    const bool compensated = (kind[0] & 32) != 0 && !is_refused(kind[1] % GOOD_INTEGRATORS, true);
+    const stf_world_def def = {.dimensions = 1 + kind[0] % 3, .keep_previous = (kind[0] & 64) != 0, .compensated = compensated,
                                .keep_radius = (kind[0] & 128) != 0, .integrator = integrators[kind[1] % GOOD_INTEGRATORS],
                                .capacity = how & 15, .allocator = ration_allocator(r),
                                .parallel = {.run = run_backwards, .tasks = how >> 4 & 3}};

@@ -77,6 +77,9 @@ bool is_step(double step, unsigned substeps);
 #define GOOD_INTEGRATORS 10
 extern const stf_integrator *const integrators[INTEGRATORS];
 
+/* Whether a world refuses this one of them. */
+bool is_refused(unsigned integrator, bool compensated);
+
 /* For stf_parallel: backwards, as a test that the order does not matter. */
 void run_backwards(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);
 

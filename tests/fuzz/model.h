@@ -16,7 +16,7 @@ typedef struct model_force {
 
 typedef struct model {
     unsigned dimensions, substeps;
-    bool keep_previous, keep_radius;
+    bool keep_previous, keep_radius, compensated;
     const stf_integrator *integrator;
     double step, step_start_time;
     uint64_t ticks, step_start_tick;

@@ -332,3 +332,8 @@ const stf_integrator *const integrators[INTEGRATORS] = {
     &stf_explicit_euler, &stf_semi_implicit_euler, &stf_midpoint, &stf_improved_euler, &stf_rk4, &stf_position_verlet,
     &stf_velocity_verlet, &remembering, &plain, &stf_rk4, &unnamed, &unable, &greedy, &clinging,
 };
+
+bool is_refused(unsigned integrator, bool compensated)
+{
+    return integrator >= GOOD_INTEGRATORS || (compensated && !(integrators[integrator]->flags & STF_COMPENSATES));
+}

@@ -205,8 +205,9 @@ void create(game *g)
     ration r = {.garbage = 0x41, .fail_in = take(p) % 4};
     stf_world_def def = {.dimensions = bits & 7, .integrator = integrators[which], .substeps = substeps % 4,
                          .step = take_double(p), .gravity = take_vector(p, 3), .capacity = take(p),
-                         .allocator = ration_allocator(&r), .keep_previous = (bits & 8) != 0};
-    unsigned faults = which < GOOD_INTEGRATORS ? 0 : 1U << STF_ERROR_DESCRIPTOR;
+                         .allocator = ration_allocator(&r), .keep_previous = (bits & 8) != 0,
+                         .compensated = (bits & 64) != 0, .guard.mode = (stf_guard_mode)(substeps >> 2 & 3)};
+    unsigned faults = is_refused(which, def.compensated) ? 1U << STF_ERROR_DESCRIPTOR : 0;
     stf_world *world = NULL;
 
     if (bits >= 248)
@@ -215,6 +216,8 @@ void create(game *g)
         def.parallel.tasks = 2, faults |= 1U << STF_ERROR_DESCRIPTOR;
     if (def.dimensions > 3)
         faults |= 1U << STF_ERROR_DIMENSIONS;
+    if (def.guard.mode > STF_GUARD_FREEZE)
+        faults |= 1U << STF_ERROR_PARAMETERS;
     faults |= vector_faults(def.gravity, def.dimensions ? def.dimensions : 3);
     if (def.step != 0 && !is_step(def.step, def.substeps ? def.substeps : 1))
         faults |= 1U << STF_ERROR_STEP;

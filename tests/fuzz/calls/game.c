@@ -28,7 +28,10 @@ size_t take_index(game *g)
 
 static unsigned def_faults(const stf_world_def *def)
 {
-    return (is_step(def->step, def->substeps) ? 0 : 1U << STF_ERROR_STEP) | vector_faults(def->gravity, def->dimensions);
+    const bool is_plain = def->compensated && !(def->integrator->flags & STF_COMPENSATES);
+
+    return (is_step(def->step, def->substeps) ? 0 : 1U << STF_ERROR_STEP) | (is_plain ? 1U << STF_ERROR_DESCRIPTOR : 0) |
+           vector_faults(def->gravity, def->dimensions);
 }
 
 static void take_def(game *g)
@@ -37,6 +40,7 @@ static void take_def(game *g)
     const unsigned shape = take(&g->program), step = take(&g->program);
 
     g->def = (stf_world_def){.dimensions = 1 + shape % 3,
+                             .compensated = (shape & 32) != 0,
                              .keep_previous = (shape & 64) != 0,
                              .keep_radius = (shape & 128) != 0,
                              .integrator = integrators[take(&g->program) % GOOD_INTEGRATORS],
@@ -57,6 +61,8 @@ static stf_result make(game *g, unsigned which, unsigned how)
     def.allocator = ration_allocator(&g->rations[which]);
     if (which)
         def.parallel = (stf_parallel){.run = run_backwards, .tasks = how >> 4};
+    if (which && (how & 64) != 0)
+        def.guard = (stf_guard){.mode = STF_GUARD_REPORT, .interval = how >> 2 & 3};
     choose_instructions(how & 3);
     return stf_world_create(&def, &g->worlds[which]);
 }
@@ -87,7 +93,7 @@ bool game_start(game *g)
 
     model *m = &g->model;
     m->dimensions = g->def.dimensions, m->substeps = g->def.substeps, m->step = g->def.step;
-    m->keep_previous = g->def.keep_previous, m->keep_radius = g->def.keep_radius;
+    m->keep_previous = g->def.keep_previous, m->keep_radius = g->def.keep_radius, m->compensated = g->def.compensated;
     m->integrator = g->def.integrator;
     m->gravity = g->def.gravity;
     m->ticks = m->step_start_tick = m->count = m->force_count = 0;

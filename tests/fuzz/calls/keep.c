@@ -56,6 +56,7 @@ static stf_world *make_like(game *g, const model *m, ration *r)
 {
     const unsigned how = take(&g->program);
     const stf_world_def def = {.dimensions = m->dimensions, .keep_previous = m->keep_previous, .keep_radius = m->keep_radius,
+                               .compensated = m->compensated,
                                .integrator = m->integrator, .capacity = how & 63, .allocator = ration_allocator(r)};
     stf_world *world = NULL;
 

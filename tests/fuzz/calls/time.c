@@ -31,7 +31,8 @@ void set_substeps(game *g)
 {
     const unsigned byte = take(&g->program), substeps = byte < 250 ? byte % 5 : 0xffffffffU >> (byte - 250);
     model *m = &g->model;
-    const unsigned faults = substeps == 0 ? 1U << STF_ERROR_SUBSTEPS : is_step(m->step, substeps) ? 0 : 1U << STF_ERROR_STEP;
+    const bool is_count = substeps > 0 && substeps <= STF_SUBSTEPS_MAX;
+    const unsigned faults = !is_count ? 1U << STF_ERROR_SUBSTEPS : is_step(m->step, substeps) ? 0 : 1U << STF_ERROR_STEP;
 
     begin(g, "set_substeps", faults);
     for (stf_world *world; (world = turn(g)) != NULL;)
@@ -44,7 +45,7 @@ void set_integrator(game *g)
 {
     const unsigned which = take(&g->program) % INTEGRATORS;
 
-    begin(g, "set_integrator", which < GOOD_INTEGRATORS ? 0 : 1U << STF_ERROR_DESCRIPTOR);
+    begin(g, "set_integrator", is_refused(which, g->model.compensated) ? 1U << STF_ERROR_DESCRIPTOR : 0);
     for (stf_world *world; (world = turn(g)) != NULL;)
         g->result = stf_world_set_integrator(world, integrators[which]);
     if (accepted(g))
@@ -61,6 +62,20 @@ static void remember_positions(model *m, const stf_world *world)
     }
 }
 
+/* A guard reports what is not finite, once, and changes no bit. */
+static stf_result step_watched(stf_world *world, unsigned ticks)
+{
+    const bool was_reported = stf_world_fault(world, NULL);
+    const stf_result result = stf_world_step(world, ticks);
+    stf_fault fault;
+
+    if (result != STF_ERROR_DIVERGED)
+        return result;
+    claim(!was_reported && stf_world_fault(world, &fault) && stf_world_find_non_finite(world, NULL));
+    claim(fault.particle < stf_world_count(world) && fault.tick <= stf_world_ticks(world));
+    return STF_OK;
+}
+
 /* All ticks in one call, or one tick a call: the bits may not tell which. No step allocates. */
 void step_both(game *g, unsigned ticks)
 {
@@ -72,7 +87,7 @@ void step_both(game *g, unsigned ticks)
         for (unsigned n = 0; n < calls; n++) {
             if (n + 1 == calls && g->turns == 2 && ticks > 0)
                 remember_positions(&g->model, world);
-            g->result = stf_world_step(world, calls > 1 ? 1 : ticks);
+            g->result = step_watched(world, calls > 1 ? 1 : ticks);
         }
     }
     g->rations[0].closed = g->rations[1].closed = false;
