@@ -3,6 +3,7 @@
  * particle is bad first, after which tick and how; another is stepped to the tick before, for the state to freeze at.
  */
 #include <fenv.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -643,6 +644,20 @@ static void bad_guards_are_refused_and_change_nothing(void **state)
     stf_world_destroy(world);
 }
 
+/* In one look after the other 2^32 ticks would take minutes. */
+static void an_empty_world_ages_at_once(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1, .guard = {.mode = STF_GUARD_FREEZE, .interval = 1}});
+
+    assert_ok(stf_world_step(world, UINT_MAX));
+    assert_true(stf_world_ticks(world) == UINT_MAX);
+    assert_ok(stf_world_add(world, &(stf_particle){.velocity = {REAL_MAX, 0, 0}, .inverse_mass = 1}, NULL));
+    assert_refused(stf_world_step(world, 2), STF_ERROR_DIVERGED);
+    assert_true(stf_world_ticks(world) == (uint64_t)UINT_MAX + 1);
+    stf_world_destroy(world);
+}
+
 static void describe_tells_of_the_guard(void **state)
 {
     (void)state;
@@ -677,6 +692,7 @@ int main(void)
         cmocka_unit_test(loading_and_restoring_keep_the_guard_and_clear_the_fault),
         cmocka_unit_test(a_snapshot_of_another_world_freezes_as_that_one_would),
         cmocka_unit_test(bad_guards_are_refused_and_change_nothing),
+        cmocka_unit_test(an_empty_world_ages_at_once),
         cmocka_unit_test(describe_tells_of_the_guard),
     };
 

@@ -188,6 +188,10 @@ stf_result stf_guard_step(stf_world *world, unsigned ticks)
         stf_world_advance(world, ticks);
         return STF_OK;
     }
+    if (world->count == 0) { /* nothing to look at, however many ticks */
+        stf_world_advance(world, ticks);
+        return STF_OK;
+    }
     world->checkpoint.is_valid &= !world->history_stale;
     if (needs_checkpoint(world, ticks)) {
         if (stf_guard_find_fault(world, true, &world->fault))
