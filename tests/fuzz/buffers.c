@@ -204,6 +204,7 @@ static void claim_is_alive(stf_world *world)
     claim(result == STF_OK ? id > 0 : result == STF_ERROR_MEMORY); /* there may be no id left */
     for (size_t n = 0; stf_world_force_at(world, n) != id; n++)
         claim(stf_world_force_at(world, n) != 0 && (result || stf_world_force_at(world, n) < id));
+    step(world, 1, 1);
     claim(stf_world_remove(world, 0, NULL) == STF_OK && stf_world_count(world) == count);
     step(world, 1, 1);
     claim(stf_world_clear(world) == STF_OK && stf_world_count(world) == 0);

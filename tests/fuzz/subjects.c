@@ -43,6 +43,7 @@ static void haul(const void *records, size_t record_count, const stf_particles *
 
     claim(all->begin <= all->end && all->end <= all->count);
     for (size_t r = 0; r < record_count; r++) {
+        claim(t[r].a < all->count && t[r].b < all->count);
         const size_t a = stf_particles_offset(all, t[r].a), b = stf_particles_offset(all, t[r].b);
         const stf_real pull = all->position[a] < all->position[b] ? t[r].pull : -t[r].pull;
 

@@ -48,6 +48,11 @@ static void claim_view(const game *g, const stf_world *world)
         claim(is_same_real(all.inverse_mass[i], p->inverse_mass));
         claim(all.dimensions < 3 || is_same_real(all.position[at + 2 * all.stride], p->position.z));
     }
+    for (size_t i = all.count; (i & (all.stride - 1)) != 0; i++) { /* what belongs to no particle is 0 */
+        const size_t at = stf_particles_offset(&all, i);
+
+        claim(all.position[at] == 0 && all.velocity[at] == 0 && all.inverse_mass[i] == 0);
+    }
 }
 
 static void claim_description(game *g, const stf_world *world)

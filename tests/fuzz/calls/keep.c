@@ -4,13 +4,15 @@
 
 #include "game.h"
 
-/* A part of a size, in eighths: mostly all. */
+/* A part of a size, in eighths: mostly all; 7 is all but a byte. */
 static unsigned take_eighths(game *g)
 {
     const unsigned byte = take(&g->program);
 
     return byte < 248 ? 8 : byte - 248;
 }
+
+static size_t part_of(size_t size, unsigned eighths) { return eighths == 7 ? size - 1 : size * eighths / 8; }
 
 void save(game *g)
 {
@@ -23,7 +25,7 @@ void save(game *g)
     for (stf_world *world; (world = turn(g)) != NULL;) {
         const unsigned w = g->turns - 1;
 
-        s->size[w] = stf_world_save_size(world) * eighths / 8;
+        s->size[w] = part_of(stf_world_save_size(world), eighths);
         s->bytes[w] = exact(s->size[w]);
         g->result = stf_world_save(world, s->bytes[w], s->size[w]);
     }
@@ -127,7 +129,7 @@ void snapshot(game *g)
     for (stf_world *world; (world = turn(g)) != NULL;) {
         const unsigned w = g->turns - 1;
 
-        s->size[w] = stf_world_snapshot_size(world) * eighths / 8;
+        s->size[w] = part_of(stf_world_snapshot_size(world), eighths);
         s->bytes[w] = exact(s->size[w] + 1);
         g->result = stf_world_snapshot(world, s->bytes[w] + 1, s->size[w]);
     }
@@ -152,7 +154,7 @@ void restore(game *g)
     begin(g, "restore", eighths < 8 ? refused : unsure ? refused | 1U << STF_OK : faults);
     for (stf_world *world; (world = turn(g)) != NULL;) {
         const unsigned w = (g->turns - 1) ^ from;
-        g->result = stf_world_restore(world, s->bytes[w] + 1, s->size[w] * eighths / 8);
+        g->result = stf_world_restore(world, s->bytes[w] + 1, part_of(s->size[w], eighths));
     }
     g->rations[0].closed = g->rations[1].closed = false;
     if (accepted(g))
