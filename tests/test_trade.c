@@ -544,6 +544,45 @@ static void costs_are_what_the_timer_says_less_its_own(void **state)
     stf_trade_reference_destroy(reference);
 }
 
+/* A timer that is read ever more quickly, in 1e-3 / n s: runs that take some ns seem to take less than no time. */
+static size_t builds;
+
+static double hurried_seconds(void *user)
+{
+    (void)user;
+    return 1e-3 * log((double)++readings) + 1e-10 * (double)work;
+}
+
+static stf_result count_builds(void *user, stf_world **world)
+{
+    builds++;
+    return build_work(user, world);
+}
+
+static void runs_too_short_for_the_timer_are_not_repeated_without_end(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_BINARY;
+    const unsigned steps[] = {64};
+    stf_trade_reference *reference = make_reference(&scene, false);
+    stf_trade_row row;
+
+    readings = builds = 0;
+    assert_ok(stf_trade(&(stf_trade_def){.build = count_builds,
+                                         .user = &scene,
+                                         .reference = reference,
+                                         .integrators = stf_integrators,
+                                         .integrator_count = 1,
+                                         .steps = steps,
+                                         .steps_count = 1,
+                                         .repeats = 1,
+                                         .repeat_seconds = 1e-4,
+                                         .seconds = hurried_seconds},
+                        &row));
+    assert_in_range(builds, 50, 200); /* as many as readings of the timer last as long as a repeat: some 100 */
+    stf_trade_reference_destroy(reference);
+}
+
 /* Repeats that last 1, 2, 3, 4 and 10: the median is 3, the quartiles 2 and 4, in whatever order they come. */
 static double pace;
 
@@ -790,6 +829,7 @@ int main(void)
         cmocka_unit_test(picks_hold),
         cmocka_unit_test(the_front_and_the_picks_are_those_of_the_rows),
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
+        cmocka_unit_test(runs_too_short_for_the_timer_are_not_repeated_without_end),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
         cmocka_unit_test(bad_references_are_refused),
