@@ -176,14 +176,15 @@ static stf_result judge_row(const job *j, size_t index, stf_trade_row *row)
 /* ---- costs ----------------------------------------------------------------------------------------------------------- */
 
 /*
- * s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. What seems to take less
- * than the timer may be its noise, and is taken for as much.
+ * s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. An estimate below what
+ * the timer takes is noise, and taken for as much.
  */
 static stf_result time_row(const stf_trade_run *of, size_t index, double estimate, double *seconds)
 {
     const job *j = (const job *)of;
     const unsigned steps = steps_of(j, index);
-    const double least = fmax(estimate, j->timer_overhead), share = least > 0 ? j->def.repeat_seconds / least : (double)RUNS_MAX;
+    const double each = fmax(estimate, j->timer_overhead);
+    const double share = each > 0 ? j->def.repeat_seconds / each : (double)RUNS_MAX;
     const unsigned ticks = share < 1 ? (unsigned)ceil(steps * share) : steps;
     const unsigned runs = share > 1 ? (unsigned)fmin(ceil(share), RUNS_MAX) : 1;
     double sum = 0;
