@@ -176,8 +176,8 @@ static stf_result judge_row(const job *j, size_t index, stf_trade_row *row)
 /* ---- costs ----------------------------------------------------------------------------------------------------------- */
 
 /*
- * s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. An estimate below what
- * the timer takes is noise, and taken for as much.
+ * s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. An estimate below
+ * what the timer takes is noise, and taken for as much.
  */
 static stf_result time_row(const stf_trade_run *of, size_t index, double estimate, double *seconds)
 {
