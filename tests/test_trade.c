@@ -542,6 +542,41 @@ static void costs_are_what_the_timer_says_less_its_own(void **state)
     stf_trade_reference_destroy(reference);
 }
 
+/* A timer that goes in steps of 4 ms: most runs seem to take no time. */
+static size_t builds;
+
+static double coarse_seconds(void *user) { return 4e-3 * floor(worked_seconds(user) / 4e-3); }
+
+static stf_result count_builds(void *user, stf_world **world)
+{
+    builds++;
+    return build_work(user, world);
+}
+
+static void runs_too_short_for_the_timer_are_not_repeated_for_long(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_BINARY;
+    const unsigned steps[] = {64};
+    stf_trade_reference *reference = make_reference(&scene, false);
+    stf_trade_row row;
+
+    work = readings = builds = 0;
+    assert_ok(stf_trade(&(stf_trade_def){.build = count_builds,
+                                         .user = &scene,
+                                         .reference = reference,
+                                         .integrators = stf_integrators,
+                                         .integrator_count = 1,
+                                         .steps = steps,
+                                         .steps_count = 1,
+                                         .repeats = 1,
+                                         .repeat_seconds = 1e-5,
+                                         .seconds = coarse_seconds},
+                        &row));
+    assert_in_range(builds, 2, 1 + 4000 / 64 + 1); /* until the next step of the timer: a run takes 64 us */
+    stf_trade_reference_destroy(reference);
+}
+
 /* Repeats that last 1, 2, 3, 4 and 10: the median is 3, the quartiles 2 and 4, in whatever order they come. */
 static double pace;
 
@@ -732,6 +767,7 @@ int main(void)
         cmocka_unit_test(picks_hold),
         cmocka_unit_test(the_front_and_the_picks_are_those_of_the_rows),
         cmocka_unit_test(costs_are_what_the_timer_says_less_its_own),
+        cmocka_unit_test(runs_too_short_for_the_timer_are_not_repeated_for_long),
         cmocka_unit_test(costs_are_medians_with_quartiles),
         cmocka_unit_test(runs_are_timed_in_turn),
         cmocka_unit_test(where_nothing_is_nothing_is_wrong),

@@ -19,6 +19,7 @@
 #define DEFAULT_REPEATS 25
 #define DEFAULT_REPEAT_SECONDS 0.00025
 #define RUNS_MAX 100000 /* that one repeat of one row takes, however short they are */
+#define REPEATS_MAX 100 /* as long as so many may one last that comes out longer than its estimate */
 #define TIMER_LOTS 10
 #define TIMER_CALLS 100
 #define NANO 1e9
@@ -175,17 +176,22 @@ static stf_result judge_row(const job *j, size_t index, stf_trade_row *row)
 
 /* ---- costs ----------------------------------------------------------------------------------------------------------- */
 
-/* s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. */
+/*
+ * s a whole run takes: whole runs as long as a repeat lasts, or of a run that takes longer its beginning. An estimate may be
+ * nothing but the timer's noise, and far too short: then the time that has gone, worlds and all, ends the repeat.
+ */
 static stf_result time_row(const stf_trade_run *of, size_t index, double estimate, double *seconds)
 {
     const job *j = (const job *)of;
     const unsigned steps = steps_of(j, index);
     const double share = estimate > 0 ? j->def.repeat_seconds / estimate : (double)RUNS_MAX;
     const unsigned ticks = share < 1 ? (unsigned)ceil(steps * share) : steps;
-    const unsigned runs = share > 1 ? (unsigned)fmin(ceil(share), RUNS_MAX) : 1;
+    const unsigned most = share > 1 ? (unsigned)fmin(ceil(share), RUNS_MAX) : 1;
+    const double start = now(j);
     double sum = 0;
+    unsigned runs = 0;
 
-    for (unsigned run = 0; run < runs; run++) {
+    do {
         stf_world *world;
         const stf_result result = make_world(j, index, &world);
 
@@ -193,7 +199,8 @@ static stf_result time_row(const stf_trade_run *of, size_t index, double estimat
             return result;
         sum += time_ticks(j, world, ticks);
         stf_world_destroy(world);
-    }
+        runs++;
+    } while (runs < most && now(j) - start < REPEATS_MAX * j->def.repeat_seconds);
     *seconds = fmax(sum, 0) / runs / ticks * steps;
     return STF_OK;
 }
