@@ -1,6 +1,6 @@
 #!/bin/sh
 # tests/fuzz/run.sh: fuzzes each target in both precisions with each fuzzer that is here, FUZZ_SECONDS seconds each, from the
-# seeds; says what came out. Called by `make fuzz`. Keeps what it found under build/fuzz/, so that the next run goes on from there.
+# seeds; says what came out. Called by `make fuzz`. Keeps what it found under build/fuzz/, and the next run goes on from there.
 set -u
 
 MAKE=${MAKE:-make}

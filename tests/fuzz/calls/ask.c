@@ -1,6 +1,5 @@
 /* What only looks at worlds, and what makes others for a moment. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
