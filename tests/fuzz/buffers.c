@@ -11,7 +11,7 @@
 
 /* bits of the first byte */
 enum {
-    OWN = 1 << 0,     /* the buffer is what this world saves, and the rest of the bytes are changes to it; else they are the buffer */
+    OWN = 1 << 0,     /* the buffer is what this world saves, the other bytes are changes to it; else they are the buffer */
     MENDED = 1 << 1,  /* length and checksum are set right, so that what is behind them is reached */
     CROWDED = 1 << 2, /* the world that loads has particles and records */
     FORCES = 1 << 3   /* it has forces */

@@ -44,8 +44,8 @@ stf_allocator ration_allocator(ration *r);
 /* ---- what a program can name ------------------------------------------------------------------------------------------ */
 
 /*
- * A force. `layout` is its record, a letter a number: i the index of a particle, v a vector, k a coefficient of 0 or more, s one
- * of any sign, r any real, 1 2 4 8 an integer of so many bytes. Its descriptor is bad where `layout` is NULL.
+ * A force. `layout` is its record, a letter a number: i the index of a particle, v a vector, k a coefficient of 0 or more, s
+ * one of any sign, r any real, 1 2 4 8 an integer of so many bytes. Its descriptor is bad where `layout` is NULL.
  */
 typedef struct subject {
     const stf_force *force;

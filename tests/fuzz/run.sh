@@ -1,6 +1,6 @@
 #!/bin/sh
 # tests/fuzz/run.sh: fuzzes each target in both precisions with each fuzzer that is here, FUZZ_SECONDS seconds each, from the
-# seeds; says what came out. Called by `make fuzz`. Keeps what it found under build/fuzz/, so that the next run goes on from there.
+# seeds; says what came out. Called by `make fuzz`. Keeps what it found under build/fuzz/, and the next run goes on from there.
 set -u
 
 MAKE=${MAKE:-make}
@@ -28,7 +28,7 @@ report() {
     row "$2" "$3" "$1" "$4" "$(($4 / $5))" "$6" "$7"
     [ "$7" = 0 ] && return
     failed=1
-    echo "steadfast: $2 fails on $8; to see what it calls: make fuzz-targets SAN=1 && \\" \
+    echo "steadfast: $2 fails on $8; to see what it calls: make fuzz-targets SAN=1 &&" \
          "build/*-sanitize/fuzz/$2-$3 -v $8" >&2
 }
 
@@ -46,18 +46,20 @@ libfuzzer() {
     report libFuzzer "$1" "$2" "$executions" "$seconds" "${edges:-0}" "$([ $status -eq 0 ] && echo 0 || echo 1)" "$file"
 }
 
-stat_of() { sed -n "s/^$2 *: *//p" "$1/fuzzer_stats"; }
+# A number of AFL++'s; 0 before the first run.
+stat_of() { sed -n "s/^$2 *: *//p" "$1/fuzzer_stats" 2>/dev/null | grep . || echo 0; }
 
 afl() {
     out=$work/afl-out/$1-$2
     mkdir -p "$work/afl-out"
     if [ -d "$out/default" ]; then from=-; else from=tests/fuzz/seeds/$1; fi
+    before=$(stat_of "$out/default" execs_done) # it counts on
     AFL_SKIP_CPUFREQ=1 AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES=1 AFL_NO_UI=1 AFL_NO_AFFINITY=1 AFL_FAST_CAL=1 \
         ASAN_OPTIONS=$ASAN_OPTIONS:abort_on_error=1:symbolize=0:detect_leaks=0 UBSAN_OPTIONS= \
         afl-fuzz -V "$seconds" -t 2000+ -G "$3" -i "$from" -o "$out" -- "$work/afl/fuzz/$1-$2" >"$work/afl-$1-$2.log" 2>&1
     [ -f "$out/default/fuzzer_stats" ] || { tail -n 20 "$work/afl-$1-$2.log" >&2; fail "AFL++ did not run $1-$2: see above"; }
     crashes=$(find "$out/default/crashes" -name 'id*' | wc -l)
-    report AFL++ "$1" "$2" "$(stat_of "$out/default" execs_done)" "$(stat_of "$out/default" run_time)" \
+    report AFL++ "$1" "$2" "$(($(stat_of "$out/default" execs_done) - before))" "$seconds" \
         "$(stat_of "$out/default" edges_found)" "$crashes" "$(find "$out/default/crashes" -name 'id*' | head -n 1)"
 }
 

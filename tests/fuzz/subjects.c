@@ -134,7 +134,8 @@ static stf_real thickness(const void *records, size_t record_count) { return rec
 
 static const stf_force syrup = {.name = "syrup", .record_size = sizeof(stf_real), .drag = thickness, .fields = "r"};
 
-static const stf_force nameless = {.apply = sway}, idle = {.name = "idle"}, both = {.name = "both", .apply = sway, .drag = thickness},
+static const stf_force nameless = {.apply = sway}, idle = {.name = "idle"},
+    both = {.name = "both", .apply = sway, .drag = thickness},
     odd_kind = {.name = "odd", .kind = (stf_force_kind)2, .apply = sway},
     odd_fields = {.name = "odd", .record_size = 4, .apply = sway, .fields = "8"},
     splits_and_rounds = {.name = "odd", .kind = STF_LINK, .splits = true, .rounds = rounds_of_swirl, .apply = swirl};

@@ -1,6 +1,5 @@
 /* What only looks at worlds, and what makes others for a moment. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,7 +82,7 @@ void ask(game *g)
     g->work -= model_tick_cost(&g->model);
 }
 
-/* ---- positions ----------------------------------------------------------------------------------------------------------- */
+/* ---- positions ---------------------------------------------------------------------------------------------------------- */
 
 static float component(stf_vector v, unsigned d) { return (float)(d == 0 ? v.x : d == 1 ? v.y : v.z); }
 
@@ -114,7 +113,8 @@ void copy_positions(game *g)
     static const double alphas[] = {0, 1, 0.5, 0.25, -0.0, -1e-9, 1.0000001, 0.999};
     const unsigned byte = take(&g->program), extra = take(&g->program);
     const double alpha = byte < 250 ? alphas[byte % COUNT_OF(alphas)] : take_double(&g->program);
-    const size_t row = g->model.dimensions * sizeof(float), stride = extra < 10 ? 0 : extra < 15 ? extra % row : row + extra % 40;
+    const size_t row = g->model.dimensions * sizeof(float);
+    const size_t stride = extra < 10 ? 0 : extra < 15 ? extra % row : row + extra % 40;
     const size_t size = g->model.count ? (g->model.count - 1) * (stride ? stride : row) + row : 0;
     unsigned char *copies[2] = {exact(size), exact(size)};
     unsigned faults = alpha >= 0 && alpha <= 1 ? 0 : 1U << STF_ERROR_ALPHA;
@@ -136,7 +136,7 @@ void copy_positions(game *g)
     free(copies[1]);
 }
 
-/* ---- accelerations ------------------------------------------------------------------------------------------------------- */
+/* ---- accelerations ------------------------------------------------------------------------------------------------------ */
 
 /* Both worlds' accelerations where they stand, but `shift` s later; the immovable have none. */
 void accelerations(game *g)
@@ -171,7 +171,8 @@ void accelerations(game *g)
 }
 
 /*
- * Once a program: it is dear. The same world twice: another room moves the noise that it starts from, and with it the last digits.
+ * Once a program: it is dear. The same world twice: another room moves the noise that it starts from, and with it the last
+ * digits.
  */
 void measure_stability(game *g)
 {
@@ -200,7 +201,7 @@ void measure_stability(game *g)
     claim(found[0].force == 0 || model_find(&g->model, found[0].force));
 }
 
-/* ---- other worlds ---------------------------------------------------------------------------------------------------------- */
+/* ---- other worlds ------------------------------------------------------------------------------------------------------- */
 
 /* A def of any kind: what is wrong with it is said, and an allocation that fails leaves nothing behind. */
 void create(game *g)

@@ -234,6 +234,8 @@ void set_force(game *g)
     free(records);
 }
 
+static const char *own_records(const stf_world *world, stf_force_id id) { return stf_world_force_records(world, id, NULL); }
+
 /* Some of the records that the world itself has. */
 void set_own_records(game *g)
 {
@@ -247,10 +249,10 @@ void set_own_records(game *g)
     const size_t first = take(&g->program) % force->count, count = force->count - first;
     unsigned char *records = exact(count * size);
 
-    memcpy(records, (const char *)stf_world_force_records(g->worlds[0], id, NULL) + first * size, count * size);
+    memcpy(records, own_records(g->worlds[0], id) + first * size, count * size);
     begin(g, "set_own_records", 0);
     for (stf_world *world; (world = turn(g)) != NULL;)
-        g->result = stf_world_set_force(world, id, (const char *)stf_world_force_records(world, id, NULL) + first * size, count);
+        g->result = stf_world_set_force(world, id, own_records(world, id) + first * size, count);
     if (accepted(g))
         model_set_records(force, records, count);
     free(records);

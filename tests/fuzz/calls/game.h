@@ -2,7 +2,8 @@
  * game: two worlds that go through the same calls and always have to be the same, and what they should be.
  *
  * They are made differently: other loops, another room, other garbage in their memory, and the second one's steps are split into
- * parts that run backwards, and maybe a guard watches them. Allocations are made to fail in the first only; what has failed there is not done to the second.
+ * parts that run backwards, and maybe a guard watches them. Allocations are made to fail in the first only; what has failed
+ * there is not done to the second.
  */
 #ifndef STEADFAST_TESTS_FUZZ_GAME_H
 #define STEADFAST_TESTS_FUZZ_GAME_H
