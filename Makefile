@@ -270,7 +270,7 @@ $(BUILD)/tests/%-f64: $(BUILD)/f64/tests/%.o $(SUPPORT_SOURCES:%.c=$(BUILD)/f64/
 # The analysers read src and include; valgrind and the thread sanitizer run tests. Dot files say what is off, and why.
 LIBRARY_SOURCES := $(sort $(ONCE_SOURCES) $(TWICE_SOURCES))
 VALGRIND         = valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=all --suppressions=.valgrind
-VALGRIND_TESTS   = $(filter-out test_stability test_trade,$(TEST_NAMES))
+VALGRIND_TESTS   = $(filter-out test_stability,$(TEST_NAMES))
 VALGRIND_RUNS    = $(foreach precision,f32 f64,$(VALGRIND_TESTS:%=build/valgrind/tests/%-$(precision)))
 
 .PHONY: analyse cppcheck tidy analyser valgrind tsan

@@ -318,6 +318,33 @@ static void particle_and_force_are_named(void **state)
 }
 
 /* Pulls towards 0 with its particle's own frequency, 1 + index rad/s, which its inverse mass has to fit. */
+/*
+ * A chain of equal masses and springs between fixed ends, its fastest mode at 2 sqrt(k / m) cos(pi / 2 / springs), and fewer
+ * accelerations than it has modes. The residual bounds the error (of a symmetric matrix: B. N. Parlett, The Symmetric
+ * Eigenvalue Problem (1998), sec. 4.5), and would say nothing if it were very much more.
+ */
+static void the_residual_bounds_the_error(void **state)
+{
+    (void)state;
+    stf_world *world = world_of(1, &stf_velocity_verlet, 1e-3);
+    const double fastest = 20 * cos(acos(-1) / 2 / 99);
+
+    for (uint32_t i = 0; i < 100; i++) {
+        const stf_spring spring = {.a = i - 1, .b = i, .stiffness = 100, .rest_length = 1};
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {(stf_real)i, 0, 0}, .inverse_mass = i % 99 ? 1 : 0}, NULL));
+        if (i > 0)
+            add_force(world, &stf_force_springs, &spring);
+    }
+    for (unsigned accelerations = 25; accelerations <= 55; accelerations += 10) {
+        stf_stability found;
+        assert_ok(stf_stability_measure(world, &(stf_stability_def){.accelerations = accelerations}, &found));
+        const double error = fabs(found.omega / fastest - 1);
+        assert_below(error, found.residual);
+        assert_below(found.residual, 10 * error);
+    }
+    stf_world_destroy(world);
+}
+
 static void witness(const void *records, size_t record_count, const stf_particles *particles, double time)
 {
     (void)records, (void)record_count;
@@ -755,6 +782,7 @@ int main(void)
         cmocka_unit_test(modes_are_those_of_theory),
         cmocka_unit_test(advised_substeps_keep_the_scene_steady),
         cmocka_unit_test(particle_and_force_are_named),
+        cmocka_unit_test(the_residual_bounds_the_error),
         cmocka_unit_test(forces_see_the_particles_as_they_do_in_a_step),
         cmocka_unit_test(what_no_force_holds_has_no_limit),
         cmocka_unit_test(an_orbit_at_its_pericentre_is_limited_across_the_pull),

@@ -661,6 +661,50 @@ static void a_zeroed_def_is_the_documented_world(void **state)
     stf_world_destroy(world);
 }
 
+static void run_in_turn(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
+{
+    (void)user;
+    for (unsigned i = 0; i < tasks; i++)
+        task(context, i);
+}
+
+static void describe_says_each_thing_in_a_line(void **state)
+{
+    (void)state;
+    stf_world *world = busy_world(NULL);
+    const double real = (double)sizeof(stf_real);
+    char text[4096], expected[4096];
+
+    snprintf(expected, sizeof expected,
+             "world of 2 dimensions in " REAL_NAME ": 3 particles in 1 block of 16\n"
+             "tick of 0.015625 s: 1 step of velocity_verlet (order 2, 1 evaluation)\n"
+             "loops compiled for %s; a step in 1 part\n"
+             "links tie particles together: every pass runs over the whole world\n"
+             "                                   passes a step bytes a particle\n"
+             "  position, velocity, inverse mass             - %16.1f\n"
+             "  previous position                            - %16.1f   one pass a tick\n"
+             "  radius                                       - %16.1f\n"
+             "  velocity_verlet                              1 %16.1f\n"
+             "  gravity, linear drag                         -                -   in flight part of the integrator's pass, "
+             "else of F / m\n"
+             "  springs                                      1 ",
+             stf_world_isa(world), 5 * real, 2 * real, real,
+             2 * real * (stf_velocity_verlet.history_arrays + stf_velocity_verlet.work_arrays));
+    stf_world_describe(world, text, sizeof text);
+    assert_memory_equal(text, expected, strlen(expected));
+    assert_non_null(strstr(text, "   link, 1 record, of x v, with potential\n"
+                                 "  anchored_springs                             1 "));
+    assert_non_null(strstr(text, "   field, 1 record, of x v, with potential\n"
+                                 "  linear_drag                                  - "));
+    assert_string_equal(strstr(text, "   field, 1 record, of v\n"), "   field, 1 record, of v\n");
+    stf_world_destroy(world);
+
+    world = make_world((stf_world_def){.step = 1, .parallel = {.run = run_in_turn, .tasks = 3}});
+    assert_true(describes(world, "world of 3 dimensions in " REAL_NAME ": 0 particles in 0 blocks of "));
+    assert_true(describes(world, "; a step in up to 3 parts\n"));
+    stf_world_destroy(world);
+}
+
 static void describe_names_what_there_is_and_cuts_cleanly(void **state)
 {
     (void)state;
@@ -1124,6 +1168,7 @@ int main(void)
         cmocka_unit_test(particles_added_on_the_way_start_like_the_first),
         cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
         cmocka_unit_test(a_zeroed_def_is_the_documented_world),
+        cmocka_unit_test(describe_says_each_thing_in_a_line),
         cmocka_unit_test(describe_names_what_there_is_and_cuts_cleanly),
         cmocka_unit_test(records_are_replaced_by_more_by_fewer_and_by_themselves),
         cmocka_unit_test(anchored_springs_are_kept_in_one_order),
