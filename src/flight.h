@@ -41,6 +41,7 @@ typedef void stf_element_step(stf_element *element, stf_fall fall, stf_real dt);
  * compiler writes them into the loop. With the dimensions inside the inner loop neither gcc 12 nor clang 14 found plain vector
  * loads any more.
  */
+/* One loop, as gcc 12 forgets `restrict` in parts of it; NOLINTNEXTLINE(readability-function-cognitive-complexity) */
 STF_INLINE void stf_flight_rows(const stf_flight *flight, stf_real *restrict x, stf_real *restrict v,
                                 stf_real *restrict x_rest, stf_real *restrict v_rest, stf_real *restrict history,
                                 const stf_real *restrict inverse_mass, stf_real dt, bool has_history, bool compensated,

@@ -84,7 +84,6 @@ static void append_state(text *t, const stf_world *world)
     const stf_integrator *integrator = world->integrator;
     const unsigned long long evaluations = in_flight(world) ? 1 : (unsigned long long)integrator->evaluations;
     const double work = world->storage.whole ? integrator->work_arrays * vector : 0;
-    stf_real *arrays[STF_CHANGING_MAX];
 
     append(t, "  %-32s %13s %16s\n", "", "passes a step", "bytes a particle");
     append_row(t, "position, velocity, inverse mass", 0, 2 * vector + real, "");
@@ -94,8 +93,10 @@ static void append_state(text *t, const stf_world *world)
         append_row(t, "radius", 0, real, "");
     if (world->compensated)
         append_row(t, "rests of position and velocity", 0, 2 * vector, "");
-    if (world->storage.guarded)
+    if (world->storage.guarded) {
+        stf_real *arrays[STF_CHANGING_MAX];
         append_row(t, "checkpoint", 0, (double)stf_storage_changing(&world->storage, arrays) * vector, "two passes a look");
+    }
     append_row(t, integrator->name, evaluations, integrator->history_arrays * vector + work, "");
     append_row(t, "gravity, linear drag", 0, 0, "in flight part of the integrator's pass, else of F / m");
 }
