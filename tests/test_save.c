@@ -610,6 +610,7 @@ static void what_can_not_be_saved_is_refused(void **state)
     stf_force_id id;
 
     assert_ok(stf_world_add(world, &(stf_particle){.velocity = {REAL_MAX, 0, 0}, .inverse_mass = 1}, NULL));
+    add_force(world, &stf_force_attractor, NULL);
     assert_ok(stf_world_add_force(world, &silent, NULL, 0, &id));
     const size_t size = stf_world_save_size(world);
     assert_true(size <= sizeof buffer);

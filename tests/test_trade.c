@@ -308,6 +308,24 @@ static void a_reference_stops_where_it_is_good_enough(void **state)
     stf_trade_reference_destroy(rough);
 }
 
+/* Steps double until the next run would not be paid: 17 accelerations a step, 64 + 128 + 256 + 512 = 960 steps in all. */
+static void a_reference_spends_no_more_than_it_may(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_CHAOS;
+    stf_trade_reference_def def = {
+        .build = trade_scene_build_f64, .user = &scene, .duration = 8, .samples = SAMPLES, .accelerations = 17 * 960};
+
+    for (unsigned short_of = 0; short_of < 2; short_of++) {
+        stf_trade_reference *reference;
+
+        def.accelerations -= short_of;
+        assert_ok(stf_trade_reference_create(&def, &reference));
+        assert_int_equal(stf_trade_reference_accuracy(reference).steps, short_of ? 256 : 512);
+        stf_trade_reference_destroy(reference);
+    }
+}
+
 static void in_chaos_no_error_is_known(void **state)
 {
     (void)state;
@@ -761,6 +779,7 @@ int main(void)
         cmocka_unit_test(a_run_is_as_good_a_reference_as_it_says),
         cmocka_unit_test(an_exact_solution_of_some_particles_is_none),
         cmocka_unit_test(a_reference_stops_where_it_is_good_enough),
+        cmocka_unit_test(a_reference_spends_no_more_than_it_may),
         cmocka_unit_test(in_chaos_no_error_is_known),
         cmocka_unit_test(at_the_floor_of_double_an_error_is_a_bound),
         cmocka_unit_test(what_rests_is_bounded_wherever_it_is),

@@ -571,6 +571,27 @@ static void a_teleported_particle_moves_on_as_it_was_set(void **state)
     }
 }
 
+static stf_vector corner_of_a_cube(unsigned n)
+{
+    return (stf_vector){(stf_real)(n & 1), (stf_real)(n >> 1 & 1), (stf_real)(n >> 2)};
+}
+
+static void gravity_is_what_was_set_last(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = 1});
+
+    for (unsigned from = 0; from < 8; from++)
+        for (unsigned to = 0; to < 8; to++) {
+            const stf_vector after = corner_of_a_cube(to);
+            assert_ok(stf_world_set_gravity(world, corner_of_a_cube(from)));
+            assert_ok(stf_world_set_gravity(world, after));
+            const stf_vector g = stf_world_gravity(world);
+            assert_true(g.x == after.x && g.y == after.y && g.z == after.z);
+        }
+    stf_world_destroy(world);
+}
+
 static void gravity_pulls_along_each_axis(void **state)
 {
     (void)state;
@@ -1164,6 +1185,7 @@ int main(void)
         cmocka_unit_test(changed_forces_act_from_the_very_next_step),
         cmocka_unit_test(changed_records_act_from_the_very_next_step),
         cmocka_unit_test(a_teleported_particle_moves_on_as_it_was_set),
+        cmocka_unit_test(gravity_is_what_was_set_last),
         cmocka_unit_test(gravity_pulls_along_each_axis),
         cmocka_unit_test(particles_added_on_the_way_start_like_the_first),
         cmocka_unit_test(only_link_forces_make_a_world_step_as_a_whole),
