@@ -1099,13 +1099,6 @@ static void exact_solutions_are_consistent(void **state)
     }
 }
 
-static void run_in_turn(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
-{
-    (void)user;
-    for (unsigned i = 0; i < tasks; i++)
-        task(context, i);
-}
-
 static void describe_tells_how_a_world_steps(void **state)
 {
     (void)state;
