@@ -665,7 +665,7 @@ static void runs_are_timed_in_turn(void **state)
     turn = 0;
     for (unsigned i = 0; i < 2; i++) {
         references[i] = make_reference(&scenes[i], false);
-        assert_ok(stf_trade_begin(&(stf_trade_def){.build = trade_scene_build,
+        assert_ok(stf_trade_begin(&(stf_trade_def){.build = build_work,
                                                    .user = &scenes[i],
                                                    .reference = references[i],
                                                    .integrators = integrators,
@@ -673,6 +673,7 @@ static void runs_are_timed_in_turn(void **state)
                                                    .steps = steps,
                                                    .steps_count = 1,
                                                    .repeats = 3 - i, /* 3, and 2 */
+                                                   .seconds = worked_seconds,
                                                    .progress = note_turn},
                                   &rows[i], &runs[i]));
     }
