@@ -309,6 +309,28 @@ static void a_run_and_a_loose_spring_in_every_block_add_up(void **state)
     check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8);
 }
 
+/* Loose springs stand by groups of 32 blocks: here from each group to every block. */
+static void loose_springs_of_several_groups_add_up(void **state)
+{
+    (void)state;
+    enum { BLOCKS = 70, ALL = BLOCKS * STF_BLOCK_MAX, APART = 31 /* no divisor of ALL: every particle is each end once */ };
+    static stf_spring springs[ALL];
+    static stf_particle particles[ALL];
+    static vector forces[ALL];
+    stf_world *world = random_world(3, ALL);
+    size_t count = 0;
+
+    for (uint32_t i = 0; i < ALL; i++) {
+        const uint32_t other = (i * APART + 17) % ALL;
+        if (other != i)
+            springs[count++] = (stf_spring){.a = i, .b = other, .stiffness = 1, .damping = (stf_real)0.5};
+    }
+    copy_particles(world, particles);
+    add_spring_forces(springs, count, particles, forces);
+    assert_ok(stf_world_add_force(world, &stf_force_springs, springs, count, NULL));
+    check_forces(world, particles, forces, 2 * 1.5 * 2 * sqrt(3.0) * 8);
+}
+
 static void the_order_of_springs_changes_no_bit(void **state)
 {
     (void)state;
@@ -806,6 +828,7 @@ int main(void)
         cmocka_unit_test(springs_of_a_cloth_add_up),
         cmocka_unit_test(chains_across_blocks_add_up),
         cmocka_unit_test(a_run_and_a_loose_spring_in_every_block_add_up),
+        cmocka_unit_test(loose_springs_of_several_groups_add_up),
         cmocka_unit_test(the_order_of_springs_changes_no_bit),
         cmocka_unit_test(springs_of_the_same_ends_are_kept_in_one_order),
         cmocka_unit_test(removals_leave_springs_in_order),

@@ -662,15 +662,15 @@ static void describe_tells_of_the_guard(void **state)
 {
     (void)state;
     const scenario *s = &scenarios[0];
-    stf_world *world = world_of(s, &stf_rk4, (stf_guard){STF_GUARD_FREEZE, 1, 1e4, 0}, (stf_world_def){0});
+    stf_world *world = world_of(s, &stf_rk4, (stf_guard){STF_GUARD_FREEZE, 1, 1e4, 2e4}, (stf_world_def){0});
     char text[4096];
 
     stf_world_describe(world, text, sizeof text);
-    assert_non_null(strstr(text, "guard: freezes; a look at every particle each 1 tick; within 10000 m\n"));
+    assert_non_null(strstr(text, "guard: freezes; a look at every particle each 1 tick; within 10000 m; up to 20000 m/s\n"));
     assert_non_null(strstr(text, sizeof(stf_real) == sizeof(float) ? "24.0   two passes a look" : "48.0   two passes a look"));
     assert_refused(stf_world_step(world, TICKS), STF_ERROR_DIVERGED);
     stf_world_describe(world, text, sizeof text);
-    assert_non_null(strstr(text, "m; found particle 1 at tick "));
+    assert_non_null(strstr(text, "m/s; found particle 1 at tick "));
     stf_world_destroy(world);
 }
 
