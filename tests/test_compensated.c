@@ -291,19 +291,9 @@ static void a_world_that_does_not_compensate_refuses_what_one_that_does_saved(vo
 /* Reals of the one particle of a world of one dimension, from the end of what is saved. */
 static stf_real kept_from_end(const stf_world *world, size_t k)
 {
-    enum { CHECKSUM_BYTES = 4 };
     saved s = save_of(world);
-    const unsigned char *at = s.bytes + s.size - CHECKSUM_BYTES - (k + 1) * sizeof(stf_real);
-#ifdef STF_DOUBLE
-    uint64_t bits = 0;
-#else
-    uint32_t bits = 0;
-#endif
-    stf_real x;
+    const stf_real x = saved_from_end(s, k);
 
-    for (size_t i = sizeof x; i-- > 0;)
-        bits = bits << 8 | at[i];
-    memcpy(&x, &bits, sizeof x);
     saved_free(&s);
     return x;
 }

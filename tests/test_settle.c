@@ -42,25 +42,6 @@ static void lose_history(stf_system *system, stf_real dt)
 static const stf_integrator still = {.name = "still", .step = stand_still, .history_arrays = 1};
 static const stf_integrator loser = {.name = "loser", .step = lose_history, .history_arrays = 1};
 
-#define CHECKSUM_BYTES 4
-
-/* The k-th real from the end of what was saved, the last being the last particle's last history. */
-static stf_real saved_from_end(saved s, size_t k)
-{
-    const unsigned char *at = s.bytes + s.size - CHECKSUM_BYTES - (k + 1) * sizeof(stf_real);
-#ifdef STF_DOUBLE
-    uint64_t bits = 0;
-#else
-    uint32_t bits = 0;
-#endif
-    stf_real x;
-
-    for (size_t i = sizeof x; i-- > 0;)
-        bits = bits << 8 | at[i];
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
 static stf_real last_history(const stf_world *world)
 {
     saved s = save_of(world);

@@ -47,7 +47,7 @@ typedef struct stf_world_def {
     bool compensated;                 /* keep what rounding leaves of positions and velocities, and add it in the next step: in
                                          float for long runs and places far from the origin. What is read out is the rounded
                                          state. Costs two vectors a particle, and their way through memory */
-    stf_guard guard;                  /* all zero: none; else costs up to 3% and a copy of the state */
+    stf_guard guard;                  /* all zero: none; else some 10 ns a step, some 3% and a copy of the state */
     stf_allocator allocator;          /* all zero: malloc and free */
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;

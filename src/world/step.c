@@ -56,7 +56,6 @@ static void settle_part(void *context, unsigned part)
 {
     const stf_range *range = context;
     const size_t begin = range->blocks * part / range->parts, end = range->blocks * (part + 1) / range->parts;
-
     const stf_flight blocks = flight_of(range->world, range->first_block + begin, end - begin);
 
     range->world->kernels->settle(&blocks);

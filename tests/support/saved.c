@@ -5,6 +5,8 @@
 
 #include "support/check.h"
 
+#define CHECKSUM_BYTES 4 /* behind all else, see src/world/format.h */
+
 saved save_of(const stf_world *world)
 {
     saved s = {.size = stf_world_save_size(world)};
@@ -37,6 +39,22 @@ bool saved_is(saved s, const stf_world *world)
 
     saved_free(&now);
     return same;
+}
+
+stf_real saved_from_end(saved s, size_t k)
+{
+    const unsigned char *at = s.bytes + s.size - CHECKSUM_BYTES - (k + 1) * sizeof(stf_real);
+#ifdef STF_DOUBLE
+    uint64_t bits = 0;
+#else
+    uint32_t bits = 0;
+#endif
+    stf_real x;
+
+    for (size_t i = sizeof x; i-- > 0;)
+        bits = bits << 8 | at[i];
+    memcpy(&x, &bits, sizeof x);
+    return x;
 }
 
 static void remembering_step(stf_system *system, stf_real dt)

@@ -15,6 +15,9 @@ saved copy_of(saved s);
 void saved_free(saved *s);
 bool saved_is(saved s, const stf_world *world);
 
+/* The k-th real from the end of what was saved, the last being the last particle's last history. */
+stf_real saved_from_end(saved s, size_t k);
+
 /* Two steps of history: x += v dt; v += (23 a(n) - 16 a(n-1) + 5 a(n-2)) dt / 12 (Adams and Bashforth, 1883). */
 extern const stf_integrator remembering;
 
