@@ -61,7 +61,8 @@ static int compare_springs(const void *left, const void *right)
 
 /* Springs that are computed together: a run, within one block at each end, or the loose ones of a group of blocks. */
 typedef struct stretch {
-    size_t first, count; /* of the springs, or of the loose ones */
+    size_t first, count;   /* of the springs, or of the loose ones */
+    uint32_t lower, upper; /* ends of a run's first spring */
     bool is_run;
 } stretch;
 
@@ -100,14 +101,20 @@ static size_t run_length(const stf_spring *springs, size_t count)
     return n;
 }
 
-static void add_stretch(arrangement *to, size_t first, size_t count, bool is_run)
+static void add_run(arrangement *to, const stf_spring *springs, size_t first, size_t count)
+{
+    to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count, .is_run = true,
+                                                   .lower = lower(&springs[first]), .upper = upper(&springs[first])};
+}
+
+static void add_loose(arrangement *to, size_t first, size_t count)
 {
     stretch *last = to->stretch_count > 0 ? &to->stretches[to->stretch_count - 1] : NULL;
 
-    if (count > 0 && !is_run && last && !last->is_run)
+    if (count > 0 && last && !last->is_run)
         last->count += count;
     else if (count > 0)
-        to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count, .is_run = is_run};
+        to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count};
 }
 
 /*
@@ -138,12 +145,12 @@ static void find_stretches(const stf_spring *springs, size_t spring_count, arran
     for (size_t first = 0, n; first < spring_count; first += n) {
         n = run_length(springs + first, spring_count - first);
         if (n >= RUN_MIN)
-            add_stretch(found, first, n, true);
+            add_run(found, springs, first, n);
         for (size_t i = first; n < RUN_MIN && i < first + n; i++)
             found->loose[found->loose_count++] = springs[i];
         if (first + n == spring_count || !same_group(lower(&springs[first + n]), lower(&springs[first]))) {
             stf_sort(found->loose + added, found->loose_count - added, sizeof *springs, compare_loose);
-            add_stretch(found, added, found->loose_count - added, false);
+            add_loose(found, added, found->loose_count - added);
             added = found->loose_count;
         }
     }
@@ -168,9 +175,9 @@ static void spring_arrange(void *records, size_t record_count)
     }
 }
 
-/* A run: its springs, where their parameters start, and the state of the particles. */
+/* A run: the ends of its first spring, where their parameters start, and the state of the particles. */
 typedef struct run {
-    const stf_spring *springs;
+    uint32_t lower, upper;
     const stf_real *stiffness, *damping, *rest_length;
     const stf_particles *all;
 } run;
@@ -208,7 +215,7 @@ STF_INLINE void run_forces(unsigned dimensions, size_t n, size_t stride, const s
 static void run_part(size_t n, size_t at, const run *r, stf_real *newtons)
 {
     const stf_particles *all = r->all;
-    const size_t a = stf_particles_offset(all, lower(r->springs)) + at, b = stf_particles_offset(all, upper(r->springs)) + at;
+    const size_t a = stf_particles_offset(all, r->lower) + at, b = stf_particles_offset(all, r->upper) + at;
     const stf_real *stiffness = r->stiffness + at, *damping = r->damping + at, *rest_length = r->rest_length + at;
     const stf_real *x = all->position, *v = all->velocity;
 
@@ -237,8 +244,8 @@ static void subtract(size_t n, stf_real *restrict force, const stf_real *restric
 static void apply_run(size_t n, const run *r)
 {
     const stf_particles *all = r->all;
-    const size_t a = stf_particles_offset(all, lower(r->springs)), b = stf_particles_offset(all, upper(r->springs));
-    const bool a_is_mine = is_mine(all, lower(r->springs)), b_is_mine = is_mine(all, upper(r->springs));
+    const size_t a = stf_particles_offset(all, r->lower), b = stf_particles_offset(all, r->upper);
+    const bool a_is_mine = is_mine(all, r->lower), b_is_mine = is_mine(all, r->upper);
     const size_t whole = n / RUN_MIN * RUN_MIN;
     stf_real newtons[STF_DIMENSIONS_MAX * STF_BLOCK_MAX];
 
@@ -332,7 +339,7 @@ static void spring_apply(const void *records, size_t record_count, const stf_par
     (void)time;
 
     for (const stretch *s = arranged->stretches; s < arranged->stretches + arranged->stretch_count; s++) {
-        const run r = {springs + s->first, arranged->stiffness + s->first, arranged->damping + s->first,
+        const run r = {s->lower, s->upper, arranged->stiffness + s->first, arranged->damping + s->first,
                        arranged->rest_length + s->first, all};
 
         if (s->is_run)
