@@ -8,7 +8,7 @@
 #include "measure.h"
 
 #define THREADS 2
-#define TASKS (2 * THREADS) /* some to spare, for the thread that is through first */
+#define TASKS THREADS
 #define POLLS 100000        /* some tens of us: longer than what a game does between two calls, else the thread sleeps */
 
 static struct {
@@ -16,33 +16,42 @@ static struct {
     pthread_cond_t more;
     void (*task)(void *context, unsigned index);
     void *context;
-    volatile unsigned tasks, next, done; /* written under the lock; read without it only to see whether to take it */
+    volatile unsigned next, end; /* tasks that nobody has taken; written under the lock, read without it to see whether to take it */
+    volatile unsigned running;   /* tasks that are not done */
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .more = PTHREAD_COND_INITIALIZER};
 
-/* Takes tasks until none is left. Called and left with the lock held. */
-static void take_tasks(void)
+/* A thread that sleeps for a lock wakes up microseconds after it is free. */
+static void take_lock(void)
 {
-    while (pool.next < pool.tasks) {
-        const unsigned index = pool.next++;
+    while (pthread_mutex_trylock(&pool.lock) != 0)
+        continue;
+}
+
+/* Takes tasks until none is left, each thread from its end, so that it has the same ones at each call and they in its own cache.
+   Called and left with the lock held. */
+static void take_tasks(bool from_front)
+{
+    while (pool.next < pool.end) {
+        const unsigned index = from_front ? pool.next++ : --pool.end;
 
         pthread_mutex_unlock(&pool.lock);
         pool.task(pool.context, index);
-        pthread_mutex_lock(&pool.lock);
-        pool.done++;
+        take_lock();
+        pool.running--;
     }
 }
 
 static void *work(void *unused)
 {
     (void)unused;
-    pthread_mutex_lock(&pool.lock);
+    take_lock();
     for (;;) {
-        take_tasks();
+        take_tasks(false);
         pthread_mutex_unlock(&pool.lock);
-        for (unsigned polls = 0; pool.next >= pool.tasks && polls < POLLS; polls++)
+        for (unsigned polls = 0; pool.next >= pool.end && polls < POLLS; polls++)
             continue;
-        pthread_mutex_lock(&pool.lock);
-        while (pool.next >= pool.tasks)
+        take_lock();
+        while (pool.next >= pool.end)
             pthread_cond_wait(&pool.more, &pool.lock);
     }
     return NULL;
@@ -51,16 +60,16 @@ static void *work(void *unused)
 static void run(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context)
 {
     (void)user;
-    pthread_mutex_lock(&pool.lock);
+    take_lock();
     pool.task = task, pool.context = context;
-    pool.next = 0, pool.done = 0, pool.tasks = tasks;
+    pool.next = 0, pool.end = pool.running = tasks;
     pthread_cond_signal(&pool.more);
-    take_tasks();
-    while (pool.done < tasks) {
+    take_tasks(true);
+    while (pool.running > 0) {
         pthread_mutex_unlock(&pool.lock);
-        while (pool.done < tasks)
+        while (pool.running > 0)
             continue;
-        pthread_mutex_lock(&pool.lock);
+        take_lock();
     }
     pthread_mutex_unlock(&pool.lock);
 }
