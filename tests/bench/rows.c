@@ -169,7 +169,7 @@ static void flat_group(bench_group *g, const bench_precision *p)
     }
 }
 
-/* 6 */
+/* 6. Beside it what two threads make of plain arithmetic at that moment: a second core may be half of one, or busy. */
 static void threads_group(bench_group *g, const bench_precision *p, const char *name, bench_scene scene)
 {
     const bool springs = scene.kind == CLOTH, pairs = scene.kind == PAIRS;
@@ -179,6 +179,10 @@ static void threads_group(bench_group *g, const bench_precision *p, const char *
     split.form = LIBRARY_THREADS;
     const size_t one = add_case(g, p, scene, items), two = add_case(g, p, split, items);
     compare(add_row(g, p, name, two, springs ? "ns/spring" : pairs ? "ns/pair" : "ns/particle"), RATIO, one, one, 1 / 1.8);
+
+    const bench_scene plain = {MACHINE, ADD_MULTIPLY, EULER, 100000}, halves = {MACHINE, ADD_MULTIPLY_THREADS, EULER, 100000};
+    const size_t alone = add_case(g, p, plain, (double)plain.n), both = add_case(g, p, halves, (double)halves.n);
+    compare(add_row(g, p, "two threads, limit: add, multiply", both, "ns/particle"), RATIO, alone, alone, 0);
 }
 
 /* The guard beside the same without: whole intervals, so that each sample has its looks. */

@@ -16,8 +16,8 @@ static struct {
     pthread_cond_t more;
     void (*task)(void *context, unsigned index);
     void *context;
-    volatile unsigned next, end; /* tasks that nobody has taken; written under the lock, read without it to see whether to take it */
-    volatile unsigned running;   /* tasks that are not done */
+    volatile unsigned next, end; /* tasks that nobody has taken; these three are written under the lock, and read */
+    volatile unsigned running;   /* tasks that are not done; without it only to see whether to take it */
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .more = PTHREAD_COND_INITIALIZER};
 
 /* A thread that sleeps for a lock wakes up microseconds after it is free. */
@@ -27,7 +27,7 @@ static void take_lock(void)
         continue;
 }
 
-/* Takes tasks until none is left, each thread from its end, so that it has the same ones at each call and they in its own cache.
+/* Takes tasks until none is left, each thread from its own end, so that it has the same ones at each call, in its own cache.
    Called and left with the lock held. */
 static void take_tasks(bool from_front)
 {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bodies.h"
+#include "threads.h"
 
 typedef struct subject {
     void (*run)(struct subject *subject);
@@ -22,6 +23,23 @@ static void run_step(subject *s)
     stf_real *const *x = s->bodies.x, *const *v = s->bodies.v, *const *a = s->bodies.a;
 
     s->step(s->bodies.n, x[0], x[1], x[2], v[0], v[1], v[2], a[0], a[1], a[2], s->bodies.w, &s->law);
+}
+
+static void run_half(void *context, unsigned half)
+{
+    const subject *s = context;
+    stf_real *const *x = s->bodies.x, *const *v = s->bodies.v, *const *a = s->bodies.a;
+    const size_t n = s->bodies.n / 2, at = half * n;
+
+    s->step(n, x[0] + at, x[1] + at, x[2] + at, v[0] + at, v[1] + at, v[2] + at, a[0] + at, a[1] + at, a[2] + at,
+            s->bodies.w + at, &s->law);
+}
+
+static void run_halves(subject *s)
+{
+    const stf_parallel threads = bench_threads();
+
+    threads.run(threads.user, 2, run_half, s);
 }
 
 static void run_springs(subject *s)
@@ -42,7 +60,7 @@ static reference_step *step_of(const bench_scene *scene)
     const stf_integrator *integrator = stf_integrator_find(scene->integrator);
 
     if (scene->kind == MACHINE)
-        return scene->form == ADD_MULTIPLY ? r->add_multiply : r->copy;
+        return scene->form == COPY ? r->copy : r->add_multiply;
     if (scene->kind == FIELD)
         return r->rk4_field;
     if (scene->kind != FREE)
@@ -60,6 +78,8 @@ static void choose_loops(subject *s, const bench_scene *scene)
     s->run = run_step;
     if (scene->kind == PAIRS)
         s->run = run_pairs;
+    if (scene->form == ADD_MULTIPLY_THREADS)
+        s->run = run_halves;
     if (scene->kind == CLOTH || scene->kind == GRAPH) {
         s->run = run_springs;
         s->forces = scene->form == REFERENCE ? r->run_forces : r->edge_forces;
@@ -102,7 +122,7 @@ static void *setup(const void *argument)
         made = s->world != NULL;
     } else {
         choose_loops(s, scene);
-        made = bench_bodies_create(scene, &s->bodies);
+        made = bench_bodies_create(scene, &s->bodies) && (scene->form != ADD_MULTIPLY_THREADS || bench_threads().run);
         if (made && s->step == reference_chosen()->velocity_verlet)
             start_accelerations(s);
     }

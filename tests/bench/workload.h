@@ -34,7 +34,8 @@ typedef enum bench_form {
     EDGES_SORTED,     /* by first end, then by second */
     UPDATE,           /* reads and writes what semi-implicit Euler does */
     COPY,
-    ADD_MULTIPLY
+    ADD_MULTIPLY,
+    ADD_MULTIPLY_THREADS /* on two threads */
 } bench_form;
 
 typedef struct bench_scene {
