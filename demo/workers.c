@@ -14,7 +14,8 @@ struct workers {
     bool stop;
     SDL_atomic_t round; /* counts calls of run */
     SDL_atomic_t busy;  /* threads that have not finished this round */
-    SDL_atomic_t next;  /* the first task that nobody has taken */
+    SDL_atomic_t numbers; /* threads that have asked for theirs; the caller has 0 */
+    SDL_atomic_t taken[WORKERS_MAX + 1]; /* tasks of this round: 1 when a thread has it */
 };
 
 /* A thread that sleeps takes longer to wake than most steps to run, so both sides look again and again before they sleep. */
@@ -30,15 +31,22 @@ static void look_for_change(SDL_atomic_t *number, int from)
         SDL_CPUPauseInstruction();
 }
 
-static void take_tasks(workers *w)
+/* First the task of its own number, the same at each call, so that its particles stay in the cache of one core; then what the
+   others have not come to yet. */
+static void take_tasks(workers *w, unsigned number)
 {
-    for (unsigned i; (i = (unsigned)SDL_AtomicAdd(&w->next, 1)) < w->tasks;)
-        w->task(w->context, i);
+    for (unsigned i = 0; i < w->tasks; i++) {
+        const unsigned task = (number + i) % w->tasks;
+
+        if (SDL_AtomicCAS(&w->taken[task], 0, 1))
+            w->task(w->context, task);
+    }
 }
 
 static int work(void *user)
 {
     workers *w = user;
+    const unsigned number = (unsigned)SDL_AtomicAdd(&w->numbers, 1) + 1;
 
     for (int seen = 0;; seen++) {
         look_for_change(&w->round, seen);
@@ -49,7 +57,7 @@ static int work(void *user)
         SDL_UnlockMutex(w->mutex);
         if (stop)
             return 0;
-        take_tasks(w);
+        take_tasks(w, number);
         if (SDL_AtomicAdd(&w->busy, -1) == 1) {
             SDL_LockMutex(w->mutex); /* or the caller may miss it between its last look and its sleep */
             SDL_CondSignal(w->work_done);
@@ -66,12 +74,13 @@ static void run(void *user, unsigned tasks, void (*task)(void *context, unsigned
     w->context = context;
     w->tasks = tasks;
     SDL_AtomicSet(&w->busy, (int)w->thread_count);
-    SDL_AtomicSet(&w->next, 0);
+    for (unsigned i = 0; i < tasks; i++)
+        SDL_AtomicSet(&w->taken[i], 0);
     SDL_LockMutex(w->mutex);
     SDL_AtomicAdd(&w->round, 1);
     SDL_CondBroadcast(w->work_came);
     SDL_UnlockMutex(w->mutex);
-    take_tasks(w);
+    take_tasks(w, 0);
     for (int i = 0; i < LOOKS && SDL_AtomicGet(&w->busy) > 0; i++)
         SDL_CPUPauseInstruction();
     SDL_LockMutex(w->mutex);
