@@ -12,7 +12,8 @@ static const char *const texts[STF_RESULT_COUNT] = {
     [STF_ERROR_RADIUS] = "the radius is negative or not finite, or the world was not created with keep_radius",
     [STF_ERROR_PARTICLE] = "no particle has this index",
     [STF_ERROR_FORCE] = "no force of this world has this id",
-    [STF_ERROR_PARAMETERS] = "a parameter is negative or not finite, a spring has one end twice, or the force has no parameters",
+    [STF_ERROR_PARAMETERS] = ("a parameter is negative or not finite, a spring has one end twice, "
+                              "or the force has no parameters"),
     [STF_ERROR_DESCRIPTOR] = "an integrator, force or allocator lacks what is required of it or asks for too many arrays",
     [STF_ERROR_FRAME_TIME] = "a frame time, time scale or display period is negative or not finite",
     [STF_ERROR_ALPHA] = "the blending factor is not in [0, 1]",

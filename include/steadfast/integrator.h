@@ -62,8 +62,8 @@ struct stf_system {
 
 /*
  * Calls loop(part, dt) for systems that together are this one, each with its part of every array: on several threads where the
- * world has them and steps as a whole, else once, with this one (also where `each` is NULL). For loops that take each element by
- * itself; a step may as well loop over all of its arrays, on one thread. A loop does not call accelerate.
+ * world has them and steps as a whole, else once, with this one (also where `each` is NULL). For loops that take each element
+ * by itself; a step may as well loop over all of its arrays, on one thread. A loop does not call accelerate.
  */
 static inline void stf_system_each(stf_system *system, void (*loop)(stf_system *part, stf_real dt), stf_real dt)
 {

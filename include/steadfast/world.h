@@ -53,7 +53,8 @@ typedef struct stf_world_def {
 } stf_world_def;
 
 /* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, SUBSTEPS, NOT_FINITE (gravity), DESCRIPTOR (integrator,
-   also one without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS (guard). */
+   also one without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS
+   (guard). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
