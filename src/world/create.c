@@ -115,7 +115,7 @@ void stf_world_destroy(stf_world *world)
     const stf_allocator allocator = world->allocator;
 
     stf_world_release_forces(world);
-    stf_storage_release(world);
+    stf_allocator_release(&allocator, world->storage.memory, world->storage.bytes);
     stf_allocator_release(&allocator, world, sizeof *world);
 }
 
@@ -130,11 +130,8 @@ stf_result stf_world_set_integrator(stf_world *world, const stf_integrator *inte
     if (no_room)
         return no_room;
 
-    if (integrator != world->integrator) {
-        stf_world_clear_history(world);
-        stf_world_forget_history(world, 0, world->count);
-        stf_world_clear_velocity_rest(world);
-    }
+    if (integrator != world->integrator)
+        stf_world_renew_history(world);
     world->integrator = integrator;
     world->stepper = stf_kernels_integrator(world->kernels, integrator);
     return STF_OK;

@@ -8,7 +8,7 @@
  *     3 reals: gravity    string: the integrator's name
  *     4  last force id    8  forces         8  particles
  *     a force: string: name; 4 kind; 4 id; string: fields; 8 records; the records, packed
- *     an array of stf_storage_kept: particle by particle, and of each all components
+ *     an array of stf_world_kept: particle by particle, and of each all components
  *     4  CRC-32C of all before
  *
  * A NaN is saved as the one NaN below, as machines do not agree on its bits.
@@ -66,14 +66,6 @@ static inline stf_real stf_real_of_bits(uint64_t number)
 
     memcpy(&x, &bits, sizeof x);
     return x;
-}
-
-/* Where component d of particle i stands. */
-static inline stf_real *stf_kept_at(const stf_storage *storage, const stf_kept *kept, size_t i, size_t d)
-{
-    const size_t block = i >> storage->shift, lane = i & (storage->stride - 1);
-
-    return kept->array + (block * kept->rows + d) * storage->stride + lane;
 }
 
 /* What is saved and loaded is what could have been given to stf_world_add. */

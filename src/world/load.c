@@ -179,7 +179,7 @@ static stf_result check_arrays(stf_reader r, const saved *s, const stf_kept *kep
 static void put_arrays(stf_reader *r, stf_world *world)
 {
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept), blocks = stf_world_blocks(world);
+    const size_t arrays = stf_world_kept(world, kept), blocks = stf_world_blocks(world);
 
     for (size_t b = 0; b < blocks; b++)
         stf_storage_open_block(world, b);
@@ -216,7 +216,7 @@ static stf_result load_body(stf_reader *r, stf_world *world, const saved *s, stf
                             stf_mismatch *mismatch)
 {
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept);
+    const size_t arrays = stf_world_kept(world, kept);
     stf_result bad = STF_OK;
 
     for (size_t n = 0; n < world->force_count; n++)

@@ -141,12 +141,6 @@ static void clear_lanes_from(stf_world *world, size_t first)
     }
 }
 
-static void move_vector(const stf_world *world, stf_real *array, size_t from, size_t to)
-{
-    put_vector(world, array, to, get_vector(world, array, from));
-    put_vector(world, array, from, (stf_vector){0, 0, 0});
-}
-
 static bool same_place(stf_vector a, stf_vector b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 /* Room for a first lot is exact; a world that outgrows it takes much more, so that many small lots do not each move it. */
@@ -197,18 +191,6 @@ stf_result stf_world_add(stf_world *world, const stf_particle *particle, size_t 
     return stf_world_add_many(world, particle, 1, index);
 }
 
-static stf_particle get_particle(const stf_world *world, size_t index)
-{
-    const stf_storage *storage = &world->storage;
-
-    return (stf_particle){
-        .position = get_vector(world, storage->position, index),
-        .velocity = get_vector(world, storage->velocity, index),
-        .inverse_mass = storage->inverse_mass[index],
-        .radius = storage->radius ? storage->radius[index] : 0,
-    };
-}
-
 stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *particle)
 {
     if (!world || !particle)
@@ -216,7 +198,14 @@ stf_result stf_world_get(const stf_world *world, size_t index, stf_particle *par
     if (index >= world->count)
         return STF_ERROR_PARTICLE;
 
-    *particle = get_particle(world, index);
+    const stf_storage *storage = &world->storage;
+
+    *particle = (stf_particle){
+        .position = get_vector(world, storage->position, index),
+        .velocity = get_vector(world, storage->velocity, index),
+        .inverse_mass = storage->inverse_mass[index],
+        .radius = storage->radius ? storage->radius[index] : 0,
+    };
     return STF_OK;
 }
 
@@ -238,6 +227,22 @@ stf_result stf_world_set(stf_world *world, size_t index, const stf_particle *par
     return STF_OK;
 }
 
+/* All that is kept of the last particle; its lane gets 0, as it holds none then. */
+static void move_last(const stf_world *world, size_t index)
+{
+    const stf_storage *storage = &world->storage;
+    stf_kept kept[STF_KEPT_MAX];
+    const size_t arrays = stf_storage_kept(storage, world->dimensions, kept);
+
+    for (size_t k = 0; k < arrays; k++)
+        for (size_t d = 0; d < kept[k].rows; d++) {
+            stf_real *from = stf_kept_at(storage, &kept[k], world->count - 1, d);
+
+            *stf_kept_at(storage, &kept[k], index, d) = *from;
+            *from = 0;
+        }
+}
+
 stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
 {
     if (!world)
@@ -246,20 +251,8 @@ stf_result stf_world_remove(stf_world *world, size_t index, size_t *moved)
         return STF_ERROR_PARTICLE;
 
     const size_t last = world->count - 1;
-    const stf_storage *storage = &world->storage;
-    const stf_particle particle = get_particle(world, last);
 
-    put_particle(world, index, &particle);
-    if (storage->previous)
-        move_vector(world, storage->previous, last, index);
-    if (storage->position_rest) {
-        move_vector(world, storage->position_rest, last, index);
-        move_vector(world, storage->velocity_rest, last, index);
-    }
-    for (int k = 0; k < storage->history_arrays; k++)
-        move_vector(world, storage->history[k], last, index);
-    put_particle(world, last, &(stf_particle){.inverse_mass = 0}); /* lanes without a particle are 0 */
-
+    move_last(world, index);
     stf_world_renumber_forces(world, index, last);
     world->count = last;
     world->history_stale = true;

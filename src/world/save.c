@@ -89,7 +89,7 @@ static void put_array(writer *w, const stf_world *world, const stf_kept *kept)
 static void put_world(writer *w, const stf_world *world, size_t bytes)
 {
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept);
+    const size_t arrays = stf_world_kept(world, kept);
 
     put_head(w, world, bytes);
     for (size_t i = 0; i < world->force_count; i++)
@@ -113,7 +113,7 @@ static stf_result check_array(const stf_world *world, const stf_kept *kept)
 static stf_result check_world(const stf_world *world)
 {
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept);
+    const size_t arrays = stf_world_kept(world, kept);
     stf_result bad = STF_OK;
 
     for (size_t i = 0; i < world->force_count; i++)

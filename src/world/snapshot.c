@@ -38,7 +38,7 @@ size_t stf_world_snapshot_size(const stf_world *world)
         return 0;
 
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept);
+    const size_t arrays = stf_world_kept(world, kept);
     size_t bytes = sizeof(head) + world->force_count * sizeof(kept_force);
 
     for (size_t i = 0; i < world->force_count; i++)
@@ -62,7 +62,7 @@ stf_result stf_world_snapshot(const stf_world *world, void *memory, size_t size)
 
     const head start = {.tag = TAG, .bytes = stf_world_snapshot_size(world), .world = *world};
     stf_kept kept[STF_KEPT_MAX];
-    const size_t arrays = stf_storage_kept(world, kept);
+    const size_t arrays = stf_world_kept(world, kept);
     char *at = memory;
 
     if (size < start.bytes)
@@ -171,18 +171,6 @@ static void restore_settings(stf_world *world, const stf_world *then)
     stf_guard_reset(world);
 }
 
-/* Blocks of another size are the only block, here and there. */
-static const char *restore_array(const stf_world *world, const stf_kept *kept, size_t stride, const char *at)
-{
-    const size_t bytes = stride * sizeof(stf_real), blocks = (world->count + stride - 1) / stride;
-
-    if (stride == world->storage.stride && blocks > 0)
-        memcpy(kept->array, at, blocks * kept->rows * bytes);
-    for (size_t row = 0; stride != world->storage.stride && row < blocks * kept->rows; row++)
-        memcpy(kept->array + row * world->storage.stride, at + row * bytes, world->count * sizeof(stf_real));
-    return at + blocks * kept->rows * bytes;
-}
-
 stf_result stf_world_restore(stf_world *world, const void *memory, size_t size)
 {
     if (!world || !memory)
@@ -204,8 +192,10 @@ stf_result stf_world_restore(stf_world *world, const void *memory, size_t size)
     restore_settings(world, &start.world);
     if (stride != world->storage.stride && world->count > 0)
         stf_storage_open_block(world, 0);
-    const size_t arrays = stf_storage_kept(world, kept);
-    for (size_t k = 0; k < arrays; k++)
-        at = restore_array(world, &kept[k], stride, at);
+    const size_t arrays = stf_world_kept(world, kept);
+    for (size_t k = 0; k < arrays; k++) {
+        stf_storage_copy_rows(kept[k].array, world->storage.stride, at, stride, kept[k].rows, world->count);
+        at += (world->count + stride - 1) / stride * stride * kept[k].rows * sizeof(stf_real);
+    }
     return STF_OK;
 }

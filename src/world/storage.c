@@ -47,32 +47,25 @@ static void lay_out(stf_storage *storage, const stf_world *world)
     storage->checkpoint = storage->guarded ? take(storage, vectors * changing) : NULL;
 }
 
-/* Copies an array of `rows` components a block. Strides differ only while there is one block. */
-static void copy_array(stf_real *to, const stf_storage *to_storage, const stf_real *from, const stf_storage *from_storage,
-                       size_t rows, size_t count)
+void stf_storage_copy_rows(void *to, size_t to_stride, const void *from, size_t from_stride, size_t rows, size_t count)
 {
-    if (!to || !from)
-        return;
-    if (to_storage->stride == from_storage->stride) {
-        const size_t blocks = (count + from_storage->stride - 1) >> from_storage->shift;
-        memcpy(to, from, blocks * from_storage->stride * rows * sizeof(stf_real));
-        return;
-    }
-    for (size_t row = 0; row < rows; row++)
-        memcpy(to + row * to_storage->stride, from + row * from_storage->stride, count * sizeof(stf_real));
+    const size_t to_bytes = to_stride * sizeof(stf_real), from_bytes = from_stride * sizeof(stf_real);
+
+    if (to_stride == from_stride)
+        memcpy(to, from, (count + from_stride - 1) / from_stride * rows * from_bytes);
+    for (size_t row = 0; to_stride != from_stride && row < rows; row++)
+        memcpy((char *)to + row * to_bytes, (const char *)from + row * from_bytes, count * sizeof(stf_real));
 }
 
-static void copy_storage(stf_storage *to, const stf_storage *from, size_t dimensions, size_t count)
+/* All that is kept in `from`, to the same arrays of `to`: of two storages of this world, which has particles. */
+static void copy_storage(const stf_world *world, const stf_storage *to, const stf_storage *from)
 {
-    copy_array(to->position, to, from->position, from, dimensions, count);
-    copy_array(to->velocity, to, from->velocity, from, dimensions, count);
-    copy_array(to->position_rest, to, from->position_rest, from, dimensions, count);
-    copy_array(to->velocity_rest, to, from->velocity_rest, from, dimensions, count);
-    copy_array(to->previous, to, from->previous, from, dimensions, count);
-    copy_array(to->inverse_mass, to, from->inverse_mass, from, 1, count);
-    copy_array(to->radius, to, from->radius, from, 1, count);
-    for (int k = 0; k < to->history_arrays; k++)
-        copy_array(to->history[k], to, from->history[k], from, dimensions, count);
+    stf_kept old[STF_KEPT_MAX], new[STF_KEPT_MAX];
+    const size_t arrays = stf_storage_kept(from, world->dimensions, old);
+
+    stf_storage_kept(to, world->dimensions, new);
+    for (size_t k = 0; k < arrays; k++)
+        stf_storage_copy_rows(new[k].array, to->stride, old[k].array, from->stride, old[k].rows, world->count);
 }
 
 /* A small world has one small block, so that it does not step hundreds of empty lanes; a large one has whole blocks. */
@@ -89,40 +82,28 @@ static void choose_blocks(stf_storage *storage, size_t capacity)
         storage->capacity = storage->stride;
 }
 
-/* All blocks that have particles, in an array of `rows` components a block. */
-static void clear_array(stf_real *array, const stf_storage *storage, size_t rows, size_t count)
+void stf_storage_open_block(const stf_world *world, size_t block)
 {
-    const size_t blocks = (count + storage->stride - 1) >> storage->shift;
+    const stf_storage *storage = &world->storage;
+    stf_kept kept[STF_KEPT_MAX];
+    const size_t arrays = stf_storage_kept(storage, world->dimensions, kept);
 
-    memset(array, 0, blocks * storage->stride * rows * sizeof(stf_real));
+    for (size_t k = 0; k < arrays; k++)
+        memset(stf_kept_at(storage, &kept[k], block << storage->shift, 0), 0,
+               kept[k].rows * storage->stride * sizeof(stf_real));
 }
 
-static void open_block(const stf_storage *storage, size_t dimensions, size_t block)
+/* All blocks that have particles, of an array of vectors. */
+static void clear_vectors(const stf_world *world, stf_real *array)
 {
-    const size_t row = storage->stride, vectors = row * dimensions, bytes = sizeof(stf_real);
-
-    memset(storage->position + block * vectors, 0, vectors * bytes);
-    memset(storage->velocity + block * vectors, 0, vectors * bytes);
-    memset(storage->inverse_mass + block * row, 0, row * bytes);
-    if (storage->position_rest) {
-        memset(storage->position_rest + block * vectors, 0, vectors * bytes);
-        memset(storage->velocity_rest + block * vectors, 0, vectors * bytes);
-    }
-    if (storage->previous)
-        memset(storage->previous + block * vectors, 0, vectors * bytes);
-    if (storage->radius)
-        memset(storage->radius + block * row, 0, row * bytes);
-    for (int k = 0; k < storage->history_arrays; k++)
-        memset(storage->history[k] + block * vectors, 0, vectors * bytes);
+    memset(array, 0, stf_world_blocks(world) * stf_world_block_length(world) * sizeof(stf_real));
 }
-
-void stf_storage_open_block(const stf_world *world, size_t block) { open_block(&world->storage, world->dimensions, block); }
 
 static int larger(int a, int b) { return a > b ? a : b; }
 
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole)
 {
-    const stf_storage *old = &world->storage;
+    const stf_storage before = world->storage, *old = &before;
     const bool guarded = world->guard.mode != STF_GUARD_OFF;
 
     if (old->memory && capacity <= old->capacity && integrator->work_arrays <= old->work_arrays &&
@@ -142,21 +123,20 @@ stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_inte
         return STF_ERROR_MEMORY;
 
     lay_out(&new, world);
-    for (size_t b = 0; b << new.shift < world->count && new.stride != old->stride; b++)
-        open_block(&new, world->dimensions, b);
-    copy_storage(&new, old, world->dimensions, world->count);
-    for (int k = old->history_arrays; k < new.history_arrays; k++)
-        clear_array(new.history[k], &new, world->dimensions, world->count);
-    stf_storage_release(world);
     world->storage = new;
     world->checkpoint.is_valid = false;
+    if (world->count > 0 && new.stride != old->stride)
+        stf_storage_open_block(world, 0); /* there is no other */
+    if (world->count > 0)
+        copy_storage(world, &new, old);
+    for (int k = old->history_arrays; k < new.history_arrays; k++)
+        clear_vectors(world, new.history[k]);
+    stf_allocator_release(&world->allocator, old->memory, old->bytes);
     return STF_OK;
 }
 
-size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
+size_t stf_storage_kept(const stf_storage *storage, size_t dimensions, stf_kept kept[STF_KEPT_MAX])
 {
-    const stf_storage *storage = &world->storage;
-    const size_t dimensions = world->dimensions;
     size_t n = 0;
 
     kept[n++] = (stf_kept){storage->position, dimensions, STF_KEPT_FINITE};
@@ -170,9 +150,16 @@ size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
         kept[n++] = (stf_kept){storage->position_rest, dimensions, STF_KEPT_FINITE};
         kept[n++] = (stf_kept){storage->velocity_rest, dimensions, STF_KEPT_FINITE};
     }
-    for (int k = 0; k < world->integrator->history_arrays; k++)
+    for (int k = 0; k < storage->history_arrays; k++)
         kept[n++] = (stf_kept){storage->history[k], dimensions, STF_KEPT_ANYTHING};
     return n;
+}
+
+size_t stf_world_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX])
+{
+    const int unused = world->storage.history_arrays - world->integrator->history_arrays;
+
+    return stf_storage_kept(&world->storage, world->dimensions, kept) - (size_t)unused;
 }
 
 size_t stf_storage_changing(const stf_storage *storage, stf_real *arrays[STF_CHANGING_MAX])
@@ -188,26 +175,6 @@ size_t stf_storage_changing(const stf_storage *storage, stf_real *arrays[STF_CHA
     for (int k = 0; k < storage->history_arrays; k++)
         arrays[n++] = storage->history[k];
     return n;
-}
-
-void stf_storage_release(stf_world *world)
-{
-    stf_allocator_release(&world->allocator, world->storage.memory, world->storage.bytes);
-    world->storage = (stf_storage){0};
-}
-
-void stf_world_clear_history(stf_world *world)
-{
-    const stf_storage *storage = &world->storage;
-
-    for (int k = 0; k < storage->history_arrays; k++)
-        clear_array(storage->history[k], storage, world->dimensions, world->count);
-}
-
-void stf_world_clear_velocity_rest(stf_world *world)
-{
-    if (world->storage.velocity_rest)
-        clear_array(world->storage.velocity_rest, &world->storage, world->dimensions, world->count);
 }
 
 static void fill(stf_real *row, size_t n, stf_real value)
@@ -227,6 +194,17 @@ void stf_world_forget_history(stf_world *world, size_t first, size_t count)
                 fill(storage->history[k] + stf_world_offset(world, i) + d * storage->stride, n, (stf_real)NAN);
         }
     world->history_stale = true;
+}
+
+void stf_world_renew_history(stf_world *world)
+{
+    const stf_storage *storage = &world->storage;
+
+    for (int k = 0; k < storage->history_arrays; k++)
+        clear_vectors(world, storage->history[k]);
+    if (storage->velocity_rest)
+        clear_vectors(world, storage->velocity_rest);
+    stf_world_forget_history(world, 0, world->count);
 }
 
 stf_particles stf_world_particles(const stf_world *world, size_t first_block, size_t blocks, const stf_real *position,

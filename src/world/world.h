@@ -9,8 +9,7 @@
 /* Names of these functions for the second precision; the public ones are in precision.h. */
 #ifdef STF_DOUBLE
 #define stf_storage_require stf_storage_require_f64
-#define stf_world_clear_history stf_world_clear_history_f64
-#define stf_world_clear_velocity_rest stf_world_clear_velocity_rest_f64
+#define stf_world_renew_history stf_world_renew_history_f64
 #define stf_world_forget_history stf_world_forget_history_f64
 #define stf_world_is_tied stf_world_is_tied_f64
 #define stf_world_is_free stf_world_is_free_f64
@@ -18,7 +17,6 @@
 #define stf_range_start stf_range_start_f64
 #define stf_range_next stf_range_next_f64
 #define stf_storage_open_block stf_storage_open_block_f64
-#define stf_storage_release stf_storage_release_f64
 #define stf_world_particles stf_world_particles_f64
 #define stf_world_renumber_forces stf_world_renumber_forces_f64
 #define stf_world_drop_particle_records stf_world_drop_particle_records_f64
@@ -36,6 +34,8 @@
 #define stf_fields_pack stf_fields_pack_f64
 #define stf_fields_unpack stf_fields_unpack_f64
 #define stf_storage_kept stf_storage_kept_f64
+#define stf_storage_copy_rows stf_storage_copy_rows_f64
+#define stf_world_kept stf_world_kept_f64
 #define stf_storage_changing stf_storage_changing_f64
 #define stf_world_advance stf_world_advance_f64
 #define stf_guard_complete stf_guard_complete_f64
@@ -118,7 +118,6 @@ struct stf_world {
  * was before; moves the particles and their history there. STF_ERROR_MEMORY leaves all as it was.
  */
 stf_result stf_storage_require(stf_world *world, size_t capacity, const stf_integrator *integrator, bool whole);
-void stf_storage_release(stf_world *world);
 
 /* Sets a block to 0 that gets its first particle: memory that is never used is never touched. */
 void stf_storage_open_block(const stf_world *world, size_t block);
@@ -131,14 +130,14 @@ static inline size_t stf_world_blocks(const stf_world *world)
 /* Reals of a block in an array of vectors. */
 static inline size_t stf_world_block_length(const stf_world *world) { return world->storage.stride * world->dimensions; }
 
-/* Sets all history to 0, in lanes of no particle too: another integrator may have left there what it liked. */
-void stf_world_clear_history(stf_world *world);
-
-/* The rest of the velocity is 0 for a start: another integrator may have made something else of it. */
-void stf_world_clear_velocity_rest(stf_world *world);
-
 /* Marks the history of `count` particles from `first` as none: NaN in every component. */
 void stf_world_forget_history(stf_world *world, size_t first, size_t count);
+
+/*
+ * Another integrator starts without history, and with 0 in lanes of no particle, where the one before may have left what it
+ * liked, and in the rest of the velocity, of which that one may have made something else.
+ */
+void stf_world_renew_history(stf_world *world);
 
 /* An array that a world may have or not, from some place on. */
 static inline stf_real *stf_world_at(stf_real *array, size_t at) { return array ? array + at : NULL; }
@@ -261,8 +260,21 @@ typedef struct stf_kept {
 
 #define STF_KEPT_MAX (7 + STF_HISTORY_ARRAYS_MAX)
 
-/* All that its integrator keeps of the world, in an order that depends on nothing else; returns how many. */
-size_t stf_storage_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);
+/* All of them, the history last, in an order that depends on nothing; returns how many. And without history that the world's
+   integrator does not have. */
+size_t stf_storage_kept(const stf_storage *storage, size_t dimensions, stf_kept kept[STF_KEPT_MAX]);
+size_t stf_world_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);
+
+/* Where component d of particle i stands. */
+static inline stf_real *stf_kept_at(const stf_storage *storage, const stf_kept *kept, size_t i, size_t d)
+{
+    const size_t block = i >> storage->shift, lane = i & (storage->stride - 1);
+
+    return kept->array + (block * kept->rows + d) * storage->stride + lane;
+}
+
+/* Copies an array of `rows` components a particle. Strides differ only while there is one block, here and there. */
+void stf_storage_copy_rows(void *to, size_t to_stride, const void *from, size_t from_stride, size_t rows, size_t count);
 
 #define STF_CHANGING_MAX (4 + STF_HISTORY_ARRAYS_MAX)
 
