@@ -1,6 +1,4 @@
-#include <string.h>
-
-#include "format.h"
+#include "world.h"
 
 /* Bytes of a number, 0 for a letter that means none. */
 static size_t size_of(char letter)
@@ -49,34 +47,14 @@ size_t stf_fields_packed_size(const char *fields)
     return sum;
 }
 
-/* A number in this machine's order of bytes. */
-static uint64_t load(const void *from, size_t size)
+/* A number, of which a buffer has the low byte first and a record what the machine has first. The same both ways. */
+static void copy_number(void *to, const void *from, size_t size)
 {
-    uint8_t one;
-    uint16_t two;
-    uint32_t four;
-    uint64_t eight;
+    const uint16_t one = 1;
+    const bool is_low_first = *(const unsigned char *)&one == 1;
 
-    switch (size) {
-    case 1: return memcpy(&one, from, size), one;
-    case 2: return memcpy(&two, from, size), two;
-    case 4: return memcpy(&four, from, size), four;
-    default: return memcpy(&eight, from, sizeof eight), eight;
-    }
-}
-
-static void store(void *to, uint64_t number, size_t size)
-{
-    const uint8_t one = (uint8_t)number;
-    const uint16_t two = (uint16_t)number;
-    const uint32_t four = (uint32_t)number;
-
-    switch (size) {
-    case 1: memcpy(to, &one, size); break;
-    case 2: memcpy(to, &two, size); break;
-    case 4: memcpy(to, &four, size); break;
-    default: memcpy(to, &number, sizeof number);
-    }
+    for (size_t i = 0; i < size; i++)
+        ((unsigned char *)to)[i] = ((const unsigned char *)from)[is_low_first ? i : size - 1 - i];
 }
 
 void stf_fields_pack(const char *fields, const void *record, unsigned char *packed)
@@ -84,7 +62,7 @@ void stf_fields_pack(const char *fields, const void *record, unsigned char *pack
     for (size_t at = 0, size; *fields; fields++, at += size, packed += size) {
         size = size_of(*fields);
         at = round_up(at, alignment_of(size));
-        stf_bytes_put(packed, load((const char *)record + at, size), size);
+        copy_number(packed, (const char *)record + at, size);
     }
 }
 
@@ -93,6 +71,6 @@ void stf_fields_unpack(const char *fields, const unsigned char *packed, void *re
     for (size_t at = 0, size; *fields; fields++, at += size, packed += size) {
         size = size_of(*fields);
         at = round_up(at, alignment_of(size));
-        store((char *)record + at, stf_bytes_get(packed, size), size);
+        copy_number((char *)record + at, packed, size);
     }
 }
