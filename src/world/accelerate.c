@@ -104,22 +104,23 @@ static void apply_link(const link_call *call, size_t begin_block, size_t end_blo
     call->added->acting->apply(call->added->records, call->added->record_count, &all, q->time);
 }
 
+/* 0 where it is no link, or does not act. */
 static size_t rounds_of(const request *q, const stf_added_force *added)
 {
     const stf_particles all =
         stf_world_particles(q->range->world, q->range->first_block, q->range->blocks, q->position, q->velocity, NULL);
 
+    if (added->acting->kind != STF_LINK || !pushes(added))
+        return 0;
     return added->acting->rounds ? added->acting->rounds(added->record_count, &all) : 1;
 }
-
-static bool is_acting_link(const stf_added_force *added) { return added->acting->kind == STF_LINK && pushes(added); }
 
 /* All links on this thread; those that split, for these blocks. */
 static void apply_links(const request *q, size_t begin_block, size_t end_block)
 {
     for (size_t i = 0; i < q->range->world->force_count; i++) {
         link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
-        const size_t rounds = is_acting_link(call.added) ? rounds_of(q, call.added) : 0;
+        const size_t rounds = rounds_of(q, call.added);
 
         for (; call.round < rounds; call.round++)
             apply_link(&call, begin_block, end_block, 0);
@@ -140,7 +141,7 @@ static void apply_links_in_parts(const request *q)
 {
     for (size_t i = 0; i < q->range->world->force_count; i++) {
         link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
-        const size_t rounds = is_acting_link(call.added) ? rounds_of(q, call.added) : 0;
+        const size_t rounds = rounds_of(q, call.added);
 
         if (call.added->acting->splits || call.added->acting->rounds)
             call.parts = q->parts;

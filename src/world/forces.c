@@ -24,7 +24,7 @@ static size_t bytes_of(const stf_force *force, size_t record_count)
     return (record_count * force->record_size + STF_ALIGNMENT - 1) / STF_ALIGNMENT * STF_ALIGNMENT + arranged;
 }
 
-stf_result stf_force_check_records(const stf_force *force, const void *records, size_t record_count, unsigned dimensions,
+stf_result stf_force_check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count,
                                    size_t particle_count)
 {
     if (!records && record_count > 0)
@@ -35,16 +35,11 @@ stf_result stf_force_check_records(const stf_force *force, const void *records, 
         return STF_ERROR_MEMORY;
     for (size_t i = 0; force->check && i < record_count; i++) {
         const void *record = (const char *)records + i * force->record_size;
-        const stf_result bad = force->check(record, dimensions, particle_count);
+        const stf_result bad = force->check(record, world->dimensions, particle_count);
         if (bad)
             return bad;
     }
     return STF_OK;
-}
-
-static stf_result check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count)
-{
-    return stf_force_check_records(force, records, record_count, world->dimensions, world->count);
 }
 
 void stf_force_arrange_records(stf_added_force *added, size_t record_count)
@@ -129,7 +124,7 @@ stf_result stf_world_add_force(stf_world *world, const stf_force *force, const v
         return STF_ERROR_MEMORY;
 
     stf_added_force added = {.force = force, .acting = stf_kernels_force(world->kernels, force)};
-    stf_result bad = check_records(world, force, records, record_count);
+    stf_result bad = stf_force_check_records(world, force, records, record_count, world->count);
 
     if (!bad)
         bad = require_force_room(world);
@@ -163,7 +158,7 @@ stf_result stf_world_set_force(stf_world *world, stf_force_id id, const void *re
         return STF_ERROR_FORCE;
 
     stf_added_force changed = *added;
-    stf_result bad = check_records(world, added->force, records, record_count);
+    stf_result bad = stf_force_check_records(world, added->force, records, record_count, world->count);
     if (bad)
         return bad;
     if (stf_force_has_room(added, record_count)) {

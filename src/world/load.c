@@ -126,7 +126,7 @@ static stf_result get_records(stf_reader *r, const stf_world *world, const saved
     memset(loaded->records, 0, count * force->record_size);
     for (size_t i = 0; i < count; i++)
         stf_fields_unpack(fields, stf_get_bytes(r, size), (char *)loaded->records + i * force->record_size);
-    bad = stf_force_check_records(force, loaded->records, count, s->dimensions, s->count);
+    bad = stf_force_check_records(world, force, loaded->records, count, s->count);
     if (!bad)
         stf_force_arrange_records(loaded, count);
     return bad;
@@ -155,7 +155,7 @@ static stf_result get_force(stf_reader *r, const stf_world *world, const saved *
     if (stf_saves_records(force))
         return get_records(r, world, s, loaded, record_count);
     return record_count > 0 ? STF_ERROR_ALTERED
-                            : stf_force_check_records(force, loaded->records, loaded->record_count, s->dimensions, s->count);
+                            : stf_force_check_records(world, force, loaded->records, loaded->record_count, s->count);
 }
 
 /* The rest of the buffer is these arrays, no more and no less, and holds what a world may hold. */

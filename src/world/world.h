@@ -230,7 +230,8 @@ void stf_world_put_gravity(stf_world *world, stf_vector gravity);
 
 /* ---- records of a force, for what brings them from elsewhere ---- */
 
-stf_result stf_force_check_records(const stf_force *force, const void *records, size_t record_count, unsigned dimensions,
+/* Whether they suit the force and the world with so many particles. */
+stf_result stf_force_check_records(const stf_world *world, const stf_force *force, const void *records, size_t record_count,
                                    size_t particle_count);
 
 /* Gives `added` memory of its own for so many records, unset; what it had before is not released. */
