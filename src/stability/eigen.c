@@ -11,8 +11,8 @@
 #define LANES 8            /* partial sums of a dot product, which a compiler makes a vector of without reordering */
 #define SWEEPS_MAX 60      /* for one eigenvalue: it usually takes two or three */
 #define SWEEPS_OF_SHIFT 10 /* without success; then an exceptional shift breaks a cycle */
-
-#define LEAST 1e-100       /* a matrix of smaller elements is 0 */
+#define INVERSE_ITERATIONS 3
+#define LEAST 1e-100 /* a matrix of smaller elements is 0 */
 
 double stf_dot(size_t n, const double *a, const double *b)
 {
@@ -156,7 +156,7 @@ static void eliminate(size_t n, double complex *m, double tiny)
     }
 }
 
-/* U^H U x = x, twice: inverse iteration for the smallest singular value of m, which P and L of norms about 1 change little. */
+/* U^H U x = x, a few times: inverse iteration for the smallest singular value of m, which P and L of norms about 1 change little. */
 void stf_null_vector(size_t n, double complex *m, double complex *x)
 {
     double largest = LEAST;
@@ -166,7 +166,7 @@ void stf_null_vector(size_t n, double complex *m, double complex *x)
     eliminate(n, m, DBL_EPSILON * largest);
     for (size_t i = 0; i < n; i++)
         x[i] = 1;
-    for (int times = 0; times < 3; times++) {
+    for (int times = 0; times < INVERSE_ITERATIONS; times++) {
         for (size_t i = 0; i < n; i++) {
             for (size_t j = 0; j < i; j++)
                 x[i] -= conj(m[j * n + i]) * x[j];
