@@ -44,7 +44,7 @@ LIBRARY_OBJECTS := $(ONCE_SOURCES:%.c=$(BUILD)/once/%.o) $(TWICE_SOURCES:%.c=$(B
 DEMO_OBJECTS    := $(DEMO_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o)
 
 TRADE_OBJECTS   := $(TRADE_SOURCES:%.c=$(BUILD)/f32/%.o) $(SCENE_SOURCES:%.c=$(BUILD)/f32/%.o) \
-                   $(SCENE_SOURCES:%.c=$(BUILD)/f64/%.o) $(BUILD)/f64/demo/trade/rows.o
+                   $(SCENE_SOURCES:%.c=$(BUILD)/f64/%.o) $(BUILD)/f64/demo/trade/rows.o $(BUILD)/f32/demo/command_line.o
 
 TEST_NAMES      := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 SUPPORT_SOURCES := $(wildcard tests/support/*.c) $(SCENE_SOURCES)
@@ -214,6 +214,11 @@ $(BUILD)/f32/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 $(BUILD)/f64/demo/scenes/%.o: demo/scenes/%.c Makefile | $(DEPS_FIRST)
 	@mkdir -p $(@D)
 	$(say)$(COMPILE) -DSTF_DOUBLE -Idemo -c $< -o $@
+
+# What trade reads its options with as well.
+$(BUILD)/f32/demo/command_line.o: demo/command_line.c Makefile | $(DEPS_FIRST)
+	@mkdir -p $(@D)
+	$(say)$(COMPILE) -Idemo -c $< -o $@
 
 $(BUILD)/f32/demo/%.o: demo/%.c Makefile | need-sdl
 	@mkdir -p $(@D)

@@ -2,6 +2,7 @@
 #ifndef STEADFAST_DEMO_OPTIONS_H
 #define STEADFAST_DEMO_OPTIONS_H
 
+#include "command_line.h"
 #include "session.h"
 
 typedef enum run_mode { MODE_WINDOW, MODE_HEADLESS, MODE_PICTURES, MODE_LIST, MODE_HELP } run_mode;
@@ -10,9 +11,7 @@ typedef enum run_mode { MODE_WINDOW, MODE_HEADLESS, MODE_PICTURES, MODE_LIST, MO
 #define WIDTH_MIN 800
 #define HEIGHT_MIN 520
 
-enum { EXIT_USAGE = 2 }; /* beside EXIT_SUCCESS and EXIT_FAILURE */
-
-typedef struct options {
+struct options {
     run_mode mode;
     settings settings; /* scene NULL: none asked for */
     unsigned threads; /* 0: not asked for */
@@ -20,7 +19,7 @@ typedef struct options {
     uint64_t ticks;
     int width, height; /* px; 0: not asked for */
     const char *csv, *png, *out; /* paths, or NULL */
-} options;
+};
 
 /* False: said on stderr in one line what is wrong and what to do. */
 bool options_parse(options *o, int count, char *const arguments[]);

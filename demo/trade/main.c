@@ -10,7 +10,6 @@
 #include "table.h"
 #include "terminal.h"
 
-#define EXIT_USAGE 2
 #define SCENES_MAX 64
 
 /* Opened before anything is measured, so that a wrong path does not cost a sweep. NULL is not asked for. */
