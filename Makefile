@@ -23,7 +23,7 @@ BUILD := build/$(notdir $(firstword $(CC)))-$(MODE)
 
 # What holds no reals exists once; all else is compiled for float and for double.
 ONCE_SOURCES  := src/allocator.c src/checksum.c src/clock.c src/result.c src/sort.c src/stability/eigen.c
-ONCE_SOURCES  += $(addprefix src/trade/,extrapolation.c pick.c reference.c timing.c)
+ONCE_SOURCES  += $(addprefix src/trade/,extrapolation.c path.c pick.c reference.c timing.c)
 TWICE_SOURCES := $(filter-out $(ONCE_SOURCES),$(wildcard src/*.c src/*/*.c))
 SCENE_SOURCES := $(wildcard demo/scenes/*.c)
 

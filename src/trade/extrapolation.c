@@ -5,7 +5,7 @@
  * G. Wanner, Solving Ordinary Differential Equations I (1993), sec. II.9 (which shows that Gragg's smoothing is not needed).
  */
 #define STF_DOUBLE
-#include "extrapolation.h"
+#include "reference.h"
 
 #include "../sum.h"
 

@@ -3,11 +3,9 @@
 #include <float.h>
 #include <limits.h>
 #include <math.h>
-#include <string.h>
 
 #include "../allocator.h"
-#include "extrapolation.h"
-#include "trade.h"
+#include "reference.h"
 
 #define DEFAULT_SAMPLES 256
 #define DEFAULT_ACCELERATIONS 1000000
@@ -17,104 +15,6 @@
    small a part of the reach, is at its round-off. */
 #define LEAST_GAIN 2
 #define ROUND_OFF 1e-9
-
-double stf_trade_larger(double a, double b) { return isnan(a) || isnan(b) ? HUGE_VAL : a > b ? a : b; }
-
-double stf_trade_rms(const stf_trade_reference *reference, double sum_of_squares)
-{
-    return reference->movable > 0 ? sqrt(sum_of_squares / (double)reference->movable) : 0;
-}
-
-double stf_trade_distance(const double a[], const double b[])
-{
-    double sum = 0;
-
-    for (unsigned d = 0; d < STF_DIMENSIONS_MAX; d++)
-        sum += (a[d] - b[d]) * (a[d] - b[d]);
-    return sqrt(sum);
-}
-
-/* ---- paths ----------------------------------------------------------------------------------------------------------- */
-
-static size_t reals_a_sample(const stf_trade_reference *r) { return r->particles * r->dimensions; }
-
-/* 0: it does not fit size_t */
-static size_t path_bytes(const stf_trade_reference *r)
-{
-    const size_t samples = (size_t)r->samples + 1, most = SIZE_MAX / sizeof(double) / samples - 1 - STF_DIMENSIONS_MAX;
-
-    return r->particles > most / r->dimensions ? 0 : samples * (reals_a_sample(r) + 1 + STF_DIMENSIONS_MAX) * sizeof(double);
-}
-
-static stf_result allocate_path(const stf_trade_reference *r, stf_trade_path *path)
-{
-    const size_t bytes = path_bytes(r), samples = (size_t)r->samples + 1;
-
-    path->position = bytes > 0 ? stf_allocator_allocate(&r->allocator, bytes) : NULL;
-    if (!path->position)
-        return STF_ERROR_MEMORY;
-    path->energy = path->position + samples * reals_a_sample(r);
-    path->momentum = path->energy + samples;
-    return STF_OK;
-}
-
-static void release_path(const stf_trade_reference *r, const stf_trade_path *path)
-{
-    stf_allocator_release(&r->allocator, path->position, path_bytes(r));
-}
-
-static void record(const stf_trade_reference *r, stf_trade_path *path, unsigned sample, const stf_world *world)
-{
-    const stf_particles all = stf_world_view(world);
-    double *to = path->position + sample * reals_a_sample(r);
-    stf_energy energy = {0};
-
-    for (size_t i = 0; i < r->particles; i++)
-        for (unsigned d = 0; d < r->dimensions; d++)
-            *to++ = all.position[stf_particles_offset(&all, i) + d * all.stride];
-    stf_world_energy(world, &energy);
-    path->energy[sample] = energy.kinetic + energy.potential;
-    stf_world_momentum(world, path->momentum + (size_t)sample * STF_DIMENSIONS_MAX);
-}
-
-/* By how much two paths differ. */
-static void compare(const stf_trade_reference *r, const stf_trade_path *a, const stf_trade_path *b,
-                    stf_trade_accuracy *accuracy)
-{
-    const size_t reals = reals_a_sample(r);
-
-    accuracy->error = accuracy->energy = accuracy->momentum = 0;
-    for (unsigned k = 0; k <= r->samples; k++) {
-        const size_t momentum = (size_t)k * STF_DIMENSIONS_MAX;
-        double sum = 0;
-
-        for (size_t i = k * reals; i < (k + 1) * reals; i++)
-            sum += (a->position[i] - b->position[i]) * (a->position[i] - b->position[i]);
-        accuracy->error = stf_trade_larger(accuracy->error, stf_trade_rms(r, sum));
-        accuracy->energy = stf_trade_larger(accuracy->energy, fabs(a->energy[k] - b->energy[k]));
-        accuracy->momentum =
-            stf_trade_larger(accuracy->momentum, stf_trade_distance(a->momentum + momentum, b->momentum + momentum));
-    }
-}
-
-/* The box that holds the path: its middle, and half of its diagonal. */
-static void measure_reach(stf_trade_reference *r)
-{
-    double half_diagonal[STF_DIMENSIONS_MAX] = {0};
-    const double corner[STF_DIMENSIONS_MAX] = {0};
-
-    for (unsigned d = 0; d < r->dimensions; d++) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-
-        for (size_t i = d; i < (r->samples + (size_t)1) * reals_a_sample(r); i += r->dimensions) {
-            low = fmin(low, r->path.position[i]);
-            high = fmax(high, r->path.position[i]);
-        }
-        r->middle[d] = r->particles > 0 ? (low + high) / 2 : 0;
-        half_diagonal[d] = r->particles > 0 ? (high - low) / 2 : 0;
-    }
-    r->accuracy.reach = stf_trade_distance(half_diagonal, corner);
-}
 
 /* ---- the exact solution ---------------------------------------------------------------------------------------------- */
 
@@ -149,7 +49,7 @@ static stf_result follow_exactly(stf_trade_reference *r, const stf_trade_referen
         if (!result)
             result = place_exactly(def, world, k * r->duration / r->samples, known);
         if (!result)
-            record(r, &r->path, k, world);
+            stf_trade_path_record(r, &r->path, k, world);
     }
     return result;
 }
@@ -187,7 +87,7 @@ static stf_result run(const stf_trade_reference *r, const stf_trade_reference_de
         result = stf_world_set_step(world, r->duration / steps);
     for (unsigned k = 0; k <= r->samples && !result; k++) {
         stf_world_step(world, k > 0 ? steps / r->samples : 0);
-        record(r, path, k, world);
+        stf_trade_path_record(r, path, k, world);
     }
     stf_world_destroy(world);
     return result;
@@ -202,7 +102,7 @@ static stf_result refine(stf_trade_reference *r, const stf_trade_reference_def *
     uint64_t spent = 0;
     double before = HUGE_VAL;
 
-    stf_result result = allocate_path(r, &coarse);
+    stf_result result = stf_trade_path_allocate(r, &coarse);
     if (result)
         return result;
     r->accuracy = (stf_trade_accuracy){.error = HUGE_VAL, .energy = HUGE_VAL, .momentum = HUGE_VAL};
@@ -214,10 +114,10 @@ static stf_result refine(stf_trade_reference *r, const stf_trade_reference_def *
         result = run(r, def, steps, &r->path);
         spent += a_step * steps;
         r->accuracy.steps = steps;
-        measure_reach(r);
+        stf_trade_path_reach(r);
         if (!result && steps > r->samples) {
             before = r->accuracy.error;
-            compare(r, &coarse, &r->path, &r->accuracy);
+            stf_trade_path_compare(r, &coarse, &r->path, &r->accuracy);
         }
         const bool settled = before < ROUND_OFF * r->accuracy.reach && r->accuracy.error > before / LEAST_GAIN;
         if (settled)
@@ -225,7 +125,7 @@ static stf_result refine(stf_trade_reference *r, const stf_trade_reference_def *
         if (settled || r->accuracy.error <= def->error || steps > UINT_MAX / 2 || spent + 2 * a_step * steps > most)
             break;
     }
-    release_path(r, &coarse);
+    stf_trade_path_release(r, &coarse);
     return result;
 }
 
@@ -243,17 +143,16 @@ static size_t count_movable(const stf_world *world)
 
 static stf_result fill(stf_trade_reference *r, const stf_trade_reference_def *def, stf_world *world)
 {
-    bool known = def->exact != NULL;
-    stf_result result = known ? follow_exactly(r, def, world, &known) : STF_OK;
+    bool known = false;
+    const stf_result bad = def->exact ? follow_exactly(r, def, world, &known) : STF_OK;
 
-    if (!result && known) {
-        measure_reach(r);
-        state_round_off(r);
-        return STF_OK;
-    }
-    if (!result)
-        result = refine(r, def);
-    return result;
+    if (bad)
+        return bad;
+    if (!known)
+        return refine(r, def);
+    stf_trade_path_reach(r);
+    state_round_off(r);
+    return STF_OK;
 }
 
 stf_result stf_trade_reference_create(const stf_trade_reference_def *def, stf_trade_reference **reference)
@@ -280,7 +179,7 @@ stf_result stf_trade_reference_create(const stf_trade_reference_def *def, stf_tr
                                    .dimensions = stf_world_dimensions(world),
                                    .samples = def->samples > 0 ? def->samples : DEFAULT_SAMPLES,
                                    .duration = def->duration};
-        result = allocate_path(r, &r->path);
+        result = stf_trade_path_allocate(r, &r->path);
         if (!result)
             result = fill(r, def, world);
     } else
@@ -300,8 +199,7 @@ void stf_trade_reference_destroy(stf_trade_reference *reference)
 
     const stf_allocator allocator = reference->allocator;
 
-    if (reference->path.position)
-        release_path(reference, &reference->path);
+    stf_trade_path_release(reference, &reference->path);
     stf_allocator_release(&allocator, reference, sizeof *reference);
 }
 
