@@ -261,6 +261,34 @@ static void a_run_is_as_good_a_reference_as_it_says(void **state)
     stf_trade_reference_destroy(exact);
 }
 
+/* A guard is no part of what is modelled: neither reference nor rows stop where it would. The fall is some 8 m deep. */
+static void a_guard_of_the_scene_is_off(void **state)
+{
+    (void)state;
+    trade_scene scene = TRADE_FALL;
+    const unsigned steps[] = {SAMPLES};
+
+    for (unsigned exact = 0; exact < 2; exact++) {
+        stf_trade_row rows[2][INTEGRATORS];
+        stf_trade_accuracy accuracies[2];
+
+        for (unsigned guarded = 0; guarded < 2; guarded++) {
+            trade_scene_guard = (stf_guard){.mode = guarded ? STF_GUARD_FREEZE : STF_GUARD_OFF, .position_bound = 1};
+            stf_trade_reference *reference = make_reference(&scene, exact);
+            measure(&scene, reference, steps, 1, rows[guarded]);
+            accuracies[guarded] = stf_trade_reference_accuracy(reference);
+            stf_trade_reference_destroy(reference);
+        }
+        trade_scene_guard = (stf_guard){.mode = STF_GUARD_OFF};
+        assert_close(accuracies[1].reach, accuracies[0].reach, 0);
+        assert_close(accuracies[1].error, accuracies[0].error, 0);
+        for (size_t i = 0; i < INTEGRATORS; i++) {
+            assert_close(rows[1][i].largest_error, rows[0][i].largest_error, 0);
+            assert_close(rows[1][i].accelerations, rows[0][i].accelerations, 0);
+        }
+    }
+}
+
 static bool exact_for_the_first(void *user, size_t particle, double time, double position[3], double velocity[3])
 {
     return particle == 0 && trade_scene_exact_fall(user, particle, time, position, velocity);
@@ -778,6 +806,7 @@ int main(void)
         cmocka_unit_test(a_run_that_explodes_is_neither_bounded_nor_picked),
         cmocka_unit_test(a_run_that_is_not_finite_says_so),
         cmocka_unit_test(a_run_is_as_good_a_reference_as_it_says),
+        cmocka_unit_test(a_guard_of_the_scene_is_off),
         cmocka_unit_test(an_exact_solution_of_some_particles_is_none),
         cmocka_unit_test(a_reference_stops_where_it_is_good_enough),
         cmocka_unit_test(a_reference_spends_no_more_than_it_may),

@@ -61,8 +61,10 @@ typedef struct stf_trade_reference_def {
 
 /*
  * Makes a reference in *reference: the exact solution, or a run of Gragg's method extrapolated to order 8 (Gragg 1965; Bulirsch
- * and Stoer 1966), its step halved until that changes nothing any more. Errors: NULL, STEP (a duration that is not positive
- * and finite), MEMORY, DESCRIPTOR, and what build returns. Memory: samples x dimensions doubles a particle; twice in a run.
+ * and Stoer 1966), its step halved until that changes nothing any more. A guard of the world is off. Errors: NULL, STEP (a
+ * duration that is not positive and finite, or too short for its steps; an error that is negative or NaN), NOT_FINITE and
+ * DIMENSIONS (of what exact says), MEMORY, DESCRIPTOR, and what build returns. Memory: samples x dimensions doubles a particle;
+ * twice in a run.
  */
 STF_API stf_result stf_trade_reference_create(const stf_trade_reference_def *def, stf_trade_reference **reference);
 
@@ -103,7 +105,8 @@ typedef struct stf_trade_row {
 
 /* All but what says 0 or NULL is required. */
 typedef struct stf_trade_def {
-    stf_result (*build)(void *user, stf_world **world); /* its integrator, step and substeps are replaced */
+    stf_result (*build)(void *user, stf_world **world); /* integrator, step and substeps are replaced,
+                                                           and a guard is off */
     void *user;
     const stf_trade_reference *reference;
     const stf_integrator *const *integrators;

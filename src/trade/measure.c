@@ -85,6 +85,8 @@ static stf_result make_world(const job *j, size_t row, stf_world **world)
     else
         result = stf_world_set_integrator(made, integrator_of(j, row));
     if (!result)
+        result = stf_world_set_guard(made, (stf_guard){.mode = STF_GUARD_OFF});
+    if (!result)
         result = stf_world_set_substeps(made, 1);
     if (!result)
         result = stf_world_set_step(made, r->duration / steps_of(j, row));

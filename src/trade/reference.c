@@ -16,6 +16,14 @@
 #define LEAST_GAIN 2
 #define ROUND_OFF 1e-9
 
+/* The scene without its guard, which is no part of what it models. */
+static stf_result build(const stf_trade_reference_def *def, stf_world **world)
+{
+    const stf_result result = def->build(def->user, world);
+
+    return result ? result : stf_world_set_guard(*world, (stf_guard){.mode = STF_GUARD_OFF}); /* allocates nothing */
+}
+
 /* ---- the exact solution ---------------------------------------------------------------------------------------------- */
 
 /* *known: whether it is there for every particle. */
@@ -76,7 +84,7 @@ static void state_round_off(stf_trade_reference *r)
 static stf_result run(const stf_trade_reference *r, const stf_trade_reference_def *def, unsigned steps, stf_trade_path *path)
 {
     stf_world *world;
-    stf_result result = def->build(def->user, &world);
+    stf_result result = build(def, &world);
     if (result)
         return result;
 
@@ -168,7 +176,7 @@ stf_result stf_trade_reference_create(const stf_trade_reference_def *def, stf_tr
     if (!stf_allocator_complete(def->allocator, &allocator))
         return STF_ERROR_DESCRIPTOR;
 
-    stf_result result = def->build(def->user, &world);
+    stf_result result = build(def, &world);
     if (result)
         return result;
     r = stf_allocator_allocate(&allocator, sizeof *r);

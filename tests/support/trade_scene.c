@@ -9,6 +9,7 @@
 
 const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1, 1};
 stf_allocator trade_scene_allocator;
+stf_guard trade_scene_guard;
 
 bool trade_scene_exact_fall(void *user, size_t particle, double time, double position[3], double velocity[3])
 {
@@ -137,7 +138,7 @@ stf_result trade_scene_build(void *user, stf_world **world)
     const trade_scene which = *(const trade_scene *)user;
     const bool falls = which == TRADE_PENDULUM || which == TRADE_FALL;
     const stf_world_def def = {.dimensions = 2, .gravity = {0, falls ? (stf_real)-GRAVITY : 0, 0},
-                               .allocator = trade_scene_allocator};
+                               .allocator = trade_scene_allocator, .guard = trade_scene_guard};
     stf_world *made;
     stf_result result = stf_world_create(&def, &made);
     if (result)

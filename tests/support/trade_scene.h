@@ -25,6 +25,7 @@ extern const double trade_scene_durations[TRADE_SCENES];
 
 /* Of the worlds that are built; all zero at first. */
 extern stf_allocator trade_scene_allocator;
+extern stf_guard trade_scene_guard;
 
 #ifndef STF_DOUBLE
 stf_result trade_scene_build(void *user, stf_world **world);
