@@ -15,6 +15,7 @@ for isa in baseline avx2 avx512; do run env STEADFAST_ISA=$isa "$build/bench" --
 run sh tests/determinism/run.sh test "$build"
 run sh tests/trade/check.sh "$build"
 run "$build/extremes" --check
+run sh tests/fuzz/check.sh
 for target in calls buffers; do
     for precision in f32 f64; do run "$build/fuzz/$target-$precision" tests/fuzz/seeds/$target/*; done
 done

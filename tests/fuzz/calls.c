@@ -7,6 +7,7 @@ static void (*const operations[OPERATIONS])(game *g) = {
     add, add_crowd, set, remove_particle, clear, reserve, add_force, set_force, set_own_records, remove_force, set_gravity,
     set_step, set_substeps, set_integrator, step, leap, fail_next, save, load, revive, snapshot, restore, ask, copy_positions,
     accelerations, measure_stability, create, use_clock, pass_null, step, add, add_force,
+    trade, set_guard, freeze,
 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -7,14 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef STF_DOUBLE
-#define REAL_LEAST DBL_MIN
-#define REAL_MOST DBL_MAX
-#else
-#define REAL_LEAST FLT_MIN
-#define REAL_MOST FLT_MAX
-#endif
-
 /* No input of a fuzzer asks for more than this in earnest. */
 #define BLOCK_MAX ((size_t)1 << 26)
 
@@ -50,7 +42,7 @@ stf_real take_real(program *p)
 {
     static const stf_real extremes[] = {
         (stf_real)-0.0, (stf_real)1e-3, (stf_real)1e3, (stf_real)1e9, (stf_real)-1e9, (stf_real)1e18, (stf_real)1e-18,
-        (stf_real)-1e30, (stf_real)1e-30, REAL_LEAST, REAL_LEAST / 2, REAL_MOST, -REAL_MOST, REAL_MOST / 4, (stf_real)NAN,
+        (stf_real)-1e30, (stf_real)1e-30, REAL_LEAST, REAL_LEAST / 2, REAL_MAX, -REAL_MAX, REAL_MAX / 4, (stf_real)NAN,
         (stf_real)INFINITY, -(stf_real)INFINITY};
     const unsigned byte = take(p), first = 256 - COUNT_OF(extremes);
     stf_real x = ((stf_real)byte - 100) / 4;
@@ -157,7 +149,7 @@ unsigned particle_faults(const stf_particle *p, unsigned dimensions, bool keep_r
 
 bool is_step(double step, unsigned substeps)
 {
-    const double least = (double)REAL_LEAST, most = (double)REAL_MOST, part = step / substeps;
+    const double least = (double)REAL_LEAST, most = (double)REAL_MAX, part = step / substeps;
 
     return isfinite(step) && part >= least && part <= most;
 }

@@ -2,6 +2,7 @@
 #ifndef STEADFAST_TESTS_FUZZ_H
 #define STEADFAST_TESTS_FUZZ_H
 
+#include "../support/real.h"
 #include "steadfast/steadfast.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))

@@ -26,6 +26,9 @@ tests_of_part() {
     src/world/save.c | src/world/load.c | src/world/format.h | src/world/fields.c | src/world/reader.h | src/checksum.*)
         echo test_save ;;
     src/world/snapshot.c) echo test_rollback ;;
+    src/world/guard.c | src/world/checkpoint.c | src/flags.h) echo test_guard ;;
+    src/sum.h) echo test_compensated ;;
+    src/kernels.c) echo test_settle test_guard ;;
     src/integrators/* | src/flight.h) echo test_integrator test_order test_linear ;;
     src/forces/* | src/sort.*) echo test_force test_blocks ;;
     src/stability/*) echo test_stability ;;

@@ -72,6 +72,7 @@ static void claim_description(game *g, const stf_world *world)
 void ask(game *g)
 {
     for (unsigned w = 0; w < 2; w++) {
+        claim(strstr("avx512 avx2 baseline", stf_world_isa(g->worlds[w])));
         claim_non_finite(g, g->worlds[w]);
         claim_view(g, g->worlds[w]);
         claim_description(g, g->worlds[w]);
@@ -246,4 +247,7 @@ void pass_null(game *g)
     claim(stf_world_add_force(world, NULL, NULL, 0, NULL) == STF_ERROR_NULL && stf_world_force_at(NULL, 0) == 0);
     claim(stf_world_restore(world, NULL, 64) == STF_ERROR_NULL && stf_world_save(world, NULL, 64) == STF_ERROR_NULL);
     claim(stf_result_text((stf_result)take(&g->program)) != NULL);
+    claim(stf_integrator_find(NULL) == NULL && stf_world_isa(NULL) == NULL && !stf_world_fault(NULL, NULL));
+    claim(stf_integrator_find(stf_rk4.name) == &stf_rk4 && stf_world_clear_fault(NULL) == STF_ERROR_NULL);
+    claim(stf_version()[0] != 0 && stf_world_guard(NULL).mode == STF_GUARD_OFF);
 }

@@ -73,7 +73,7 @@ static void reset(game *g)
     g->worlds[0] = g->worlds[1] = NULL;
     g->save = NULL;
     g->fail_next = 0;
-    g->had_crowd = g->had_stability = false;
+    g->had_crowd = g->had_stability = g->had_trade = false;
     g->clock = (stf_clock){.step = 0};
     g->work = WORK;
 }

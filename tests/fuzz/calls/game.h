@@ -39,7 +39,7 @@ typedef struct game {
     size_t save_size;
 
     slot saved, snapshots[SNAPSHOT_SLOTS];
-    bool had_crowd, had_stability;
+    bool had_crowd, had_stability, had_trade;
     stf_clock clock;
 } game;
 
@@ -75,6 +75,10 @@ void *exact(size_t size);
 /* Steps both, one in one call and one tick by tick. */
 void step_both(game *g, unsigned ticks);
 
+/* Another world like the two, made with other loops and room: where they can be saved, and with all that they have. */
+bool can_be_copied(const game *g);
+stf_world *copy_of_both(game *g, ration *r);
+
 /* What a program can do; the table is in calls.c. */
 void add(game *g);
 void add_crowd(game *g);
@@ -105,5 +109,8 @@ void measure_stability(game *g);
 void create(game *g);
 void use_clock(game *g);
 void pass_null(game *g);
+void trade(game *g);
+void set_guard(game *g);
+void freeze(game *g);
 
 #endif

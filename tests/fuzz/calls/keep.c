@@ -77,6 +77,17 @@ static bool has_force_that_stays(const model *m)
     return false;
 }
 
+bool can_be_copied(const game *g) { return !g->save_result && !has_force_that_stays(&g->model); }
+
+stf_world *copy_of_both(game *g, ration *r)
+{
+    stf_world *copy = make_like(g, &g->model, r);
+
+    claim(stf_world_load(copy, g->save, g->save_size, NULL) == STF_OK);
+    model_check(&g->model, copy);
+    return copy;
+}
+
 static void claim_saves_as(const stf_world *world, const unsigned char *bytes, size_t size)
 {
     unsigned char *own = exact(size);
@@ -97,12 +108,10 @@ void revive(game *g)
     const double cost = ticks * model_tick_cost(&g->model);
     ration r = {.garbage = 0x5a};
 
-    if (g->save_result || has_force_that_stays(&g->model) || cost > g->work)
+    if (!can_be_copied(g) || cost > g->work)
         return;
 
-    stf_world *third = make_like(g, &g->model, &r);
-    claim(stf_world_load(third, g->save, g->save_size, NULL) == STF_OK);
-    model_check(&g->model, third);
+    stf_world *third = copy_of_both(g, &r);
     claim_saves_as(third, g->save, g->save_size);
     claim(stf_world_step(third, ticks) == STF_OK);
     step_both(g, ticks);

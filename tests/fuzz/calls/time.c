@@ -62,7 +62,7 @@ static void remember_positions(model *m, const stf_world *world)
     }
 }
 
-/* A guard reports what is not finite, once, and changes no bit. */
+/* A guard reports what is not finite, or beyond a bound, once, and changes no bit. */
 static stf_result step_watched(stf_world *world, unsigned ticks)
 {
     const bool was_reported = stf_world_fault(world, NULL);
@@ -71,7 +71,10 @@ static stf_result step_watched(stf_world *world, unsigned ticks)
 
     if (result != STF_ERROR_DIVERGED)
         return result;
-    claim(!was_reported && stf_world_fault(world, &fault) && stf_world_find_non_finite(world, NULL));
+    claim(!was_reported && stf_world_fault(world, &fault) && fault.kind != STF_FAULT_NONE);
+    claim(fault.kind >= STF_FAULT_VELOCITY_BOUND || stf_world_find_non_finite(world, NULL));
+    claim(fault.kind != STF_FAULT_VELOCITY_BOUND || stf_world_guard(world).velocity_bound > 0);
+    claim(fault.kind != STF_FAULT_POSITION_BOUND || stf_world_guard(world).position_bound > 0);
     claim(fault.particle < stf_world_count(world) && fault.tick <= stf_world_ticks(world));
     return STF_OK;
 }
