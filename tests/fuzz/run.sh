@@ -46,18 +46,31 @@ libfuzzer() {
     report libFuzzer "$1" "$2" "$executions" "$seconds" "${edges:-0}" "$([ $status -eq 0 ] && echo 0 || echo 1)" "$file"
 }
 
+replay_all() { find "$2" -type f ! -path '*/.state/*' -exec "$work/afl/fuzz/$1" {} + >/dev/null 2>&1; }
+
+first_that_fails() {
+    for file in "$2"/*; do
+        "$work/afl/fuzz/$1" "$file" >/dev/null 2>&1 || { echo "$file"; return; }
+    done
+}
+
 # A number of AFL++'s; 0 before the first run.
 stat_of() { sed -n "s/^$2 *: *//p" "$1/fuzzer_stats" 2>/dev/null | grep . || echo 0; }
 
+# AFL++ leaves out what fails before it has begun, and counts no crash: so all it starts from is replayed first.
 afl() {
     out=$work/afl-out/$1-$2
     mkdir -p "$work/afl-out"
-    if [ -d "$out/default" ]; then from=-; else from=tests/fuzz/seeds/$1; fi
+    if [ -d "$out/default" ]; then from=- inputs=$out/default/queue; else from=tests/fuzz/seeds/$1 inputs=$from; fi
+    if ! replay_all "$1-$2" "$inputs"; then
+        report AFL++ "$1" "$2" 0 "$seconds" 0 1 "$(first_that_fails "$1-$2" "$inputs")"
+        return
+    fi
     before=$(stat_of "$out/default" execs_done) # it counts on
     AFL_SKIP_CPUFREQ=1 AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES=1 AFL_NO_UI=1 AFL_NO_AFFINITY=1 AFL_FAST_CAL=1 \
         ASAN_OPTIONS=$ASAN_OPTIONS:abort_on_error=1:symbolize=0:detect_leaks=0 UBSAN_OPTIONS= \
-        afl-fuzz -V "$seconds" -t 2000+ -G "$3" -i "$from" -o "$out" -- "$work/afl/fuzz/$1-$2" >"$work/afl-$1-$2.log" 2>&1
-    [ -f "$out/default/fuzzer_stats" ] || { tail -n 20 "$work/afl-$1-$2.log" >&2; fail "AFL++ did not run $1-$2: see above"; }
+        afl-fuzz -V "$seconds" -t 2000+ -G "$3" -i "$from" -o "$out" -- "$work/afl/fuzz/$1-$2" >"$work/afl-$1-$2.log" 2>&1 ||
+        { tail -n 20 "$work/afl-$1-$2.log" >&2; fail "AFL++ did not run $1-$2: see above"; }
     crashes=$(find "$out/default/crashes" -name 'id*' | wc -l)
     report AFL++ "$1" "$2" "$(($(stat_of "$out/default" execs_done) - before))" "$seconds" \
         "$(stat_of "$out/default" edges_found)" "$crashes" "$(find "$out/default/crashes" -name 'id*' | head -n 1)"
