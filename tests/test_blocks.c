@@ -442,6 +442,14 @@ static stf_world *spring_world(unsigned dimensions, stf_parallel parallel)
     return world;
 }
 
+static void fail_if_called(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    (void)records, (void)all, (void)time;
+    fail_msg("called with %zu records", record_count);
+}
+
+static const stf_force asleep = {.name = "asleep", .kind = STF_LINK, .record_size = 1, .apply = fail_if_called};
+
 static void parts_pull_each_end_of_a_spring_once(void **state)
 {
     (void)state;
@@ -451,8 +459,10 @@ static void parts_pull_each_end_of_a_spring_once(void **state)
             stf_world *alone = spring_world(dimensions, (stf_parallel){.tasks = 0});
             stf_world *split = spring_world(dimensions, (stf_parallel){.run = run_shuffled, .tasks = tasks, .user = &seed});
 
-            if (tasks % 2 == 0) /* beside a link that does not split all fields come first, then link after link */
+            if (tasks % 2 == 0) { /* beside a link that does not split all fields come first, then link after link */
                 add_force(split, &idle_link, NULL);
+                assert_ok(stf_world_add_force(split, &asleep, NULL, 0, NULL));
+            }
             assert_ok(stf_world_step(alone, 2));
             assert_ok(stf_world_step(split, 2));
             assert_true(seed != tasks); /* it was split */
@@ -741,18 +751,34 @@ static void forces_are_handed_every_particle_once(void **state)
         }
 }
 
-/* Sums what stands in the lanes of a block behind its particles; the inverse masses too, which end with the block. */
-static void sum_spare_lanes(const void *records, size_t record_count, const stf_particles *particles, double time)
+/* Whole rows of a vector, no more than room for all takes, and no larger than a block. */
+static void a_small_world_has_one_small_block(void **state)
 {
-    stf_real *sum = *(stf_real *const *)records;
+    (void)state;
+    const struct {
+        size_t capacity, stride;
+    } cases[] = {{0, 16}, {1, 16}, {16, 16}, {17, 32}, {32, 32}, {33, 64}, {STF_BLOCK_MAX, STF_BLOCK_MAX},
+                 {STF_BLOCK_MAX + 1, STF_BLOCK_MAX}, {10000, STF_BLOCK_MAX}};
+
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        stf_world *world = make_world((stf_world_def){.capacity = cases[i].capacity});
+        assert_int_equal(stf_world_view(world).stride, cases[i].stride);
+        stf_world_destroy(world);
+    }
+}
+
+/* Counts what is not 0 in the lanes of a block behind its particles; the inverse masses too, which end with the block. */
+static void count_spare_lanes(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    stf_real *count = *(stf_real *const *)records;
     (void)record_count, (void)time;
 
-    *sum = 0;
+    *count = 0;
     for (size_t i = particles->count; i < particles->stride; i++) {
-        *sum += particles->inverse_mass[i];
+        *count += particles->inverse_mass[i] != 0;
         for (size_t d = 0; d < particles->dimensions; d++) {
             const stf_real x = particles->position[d * particles->stride + i], v = particles->velocity[d * particles->stride + i];
-            *sum += x * x + v * v;
+            *count += (stf_real)((x != 0) + (v != 0));
         }
     }
 }
@@ -777,7 +803,7 @@ static void elements_of_no_particle_are_zero(void **state)
                                                   .step = 1,
                                                   .gravity = {0, -1, 0},
                                                   .allocator = counting_allocator(&c)});
-    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = sum_spare_lanes};
+    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = count_spare_lanes};
     stf_real *at = &left_over;
 
     for (size_t i = 0; i < 20; i++)
@@ -809,7 +835,7 @@ static void an_integrator_finds_nothing_of_the_one_before(void **state)
 {
     (void)state;
     const stf_integrator litterer = {.name = "litterer", .step = leave_something, .history_arrays = 1};
-    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = sum_spare_lanes};
+    const stf_force spy = {.name = "spy", .record_size = sizeof(stf_real *), .apply = count_spare_lanes};
     stf_real left_over = 1, *at = &left_over;
     stf_world *world = make_world((stf_world_def){.integrator = &litterer, .step = 1});
 
@@ -950,6 +976,7 @@ int main(void)
         cmocka_unit_test(making_room_changes_no_bit),
         cmocka_unit_test(ways_of_filling_a_world_are_equal),
         cmocka_unit_test(forces_are_handed_every_particle_once),
+        cmocka_unit_test(a_small_world_has_one_small_block),
         cmocka_unit_test(elements_of_no_particle_are_zero),
         cmocka_unit_test(an_integrator_finds_nothing_of_the_one_before),
         cmocka_unit_test(accelerations_are_those_of_a_step_and_change_nothing),

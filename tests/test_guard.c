@@ -658,6 +658,45 @@ static void an_empty_world_ages_at_once(void **state)
     stf_world_destroy(world);
 }
 
+/* So many that looks and copies are in three parts: whatever part the bad particle is in, the world freezes as its shadow. */
+static void looks_in_parts_see_and_keep_every_particle(void **state)
+{
+    (void)state;
+    enum { CROWD = 3 * 16 * STF_BLOCK_MAX + 5 };
+    const scenario bounded = {.velocity_bound = 100};
+    const stf_world_def def = {.dimensions = 2, .step = STEP, .integrator = &stf_velocity_verlet, .capacity = CROWD,
+                               .gravity = {0, -1, 0}, .parallel = {.run = run_elsewhere, .tasks = 3}};
+    const uint64_t bad[] = {3, CROWD / 2, CROWD - 1};
+
+    for (size_t k = 0; k < COUNT_OF(bad); k++) {
+        stf_world *worlds[2] = {make_world(def), make_world(def)};
+        stf_fault expected = {.kind = STF_FAULT_NONE};
+
+        for (unsigned w = 0; w < 2; w++) {
+            for (size_t i = 0; i < CROWD; i++)
+                assert_ok(stf_world_add(worlds[w], &(stf_particle){.position.x = (stf_real)i, .velocity.x = (stf_real)(i % 7),
+                                                                   .inverse_mass = 1}, NULL));
+            add_force(worlds[w], &bomb_force,
+                      &(bomb){.from = 6 * STEP, .until = 1, .particle = bad[k], .push = 10000, .divisor = 1});
+        }
+        assert_ok(stf_world_set_guard(worlds[0], guard_of(&bounded, STF_GUARD_FREEZE, 4)));
+        assert_refused(stf_world_step(worlds[0], 12), STF_ERROR_DIVERGED);
+
+        saved good = {.bytes = NULL};
+        while (expected.kind == STF_FAULT_NONE) {
+            saved_free(&good);
+            good = save_of(worlds[1]);
+            assert_ok(stf_world_step(worlds[1], 1));
+            expected = look_at(&bounded, worlds[1]);
+        }
+        assert_fault(worlds[0], expected);
+        assert_true(saved_is(good, worlds[0]));
+        saved_free(&good);
+        stf_world_destroy(worlds[0]);
+        stf_world_destroy(worlds[1]);
+    }
+}
+
 static void describe_tells_of_the_guard(void **state)
 {
     (void)state;
@@ -693,6 +732,7 @@ int main(void)
         cmocka_unit_test(a_snapshot_of_another_world_freezes_as_that_one_would),
         cmocka_unit_test(bad_guards_are_refused_and_change_nothing),
         cmocka_unit_test(an_empty_world_ages_at_once),
+        cmocka_unit_test(looks_in_parts_see_and_keep_every_particle),
         cmocka_unit_test(describe_tells_of_the_guard),
     };
 

@@ -323,6 +323,12 @@ static void every_truncation_is_refused_and_changes_nothing(void **state)
     for (size_t size = 1; size < 12; size++)
         assert_refused(refusal(into, before, (const unsigned char *)"\x89PNG\r\n\x1a\n\0\0\0\0", size), STF_ERROR_FOREIGN);
 
+    /* as short as a version can be told, and not */
+    unsigned char other[AT_REAL + 4] = "STFWORLD"; /* start and checksum */
+    other[AT_VERSION] = 99;
+    assert_refused(refusal(into, before, other, sizeof other), STF_ERROR_VERSION);
+    assert_refused(refusal(into, before, other, sizeof other - 1), STF_ERROR_TRUNCATED);
+
     saved longer = {.bytes = calloc(1, s.size + 1), .size = s.size + 1};
     memcpy(longer.bytes, s.bytes, s.size);
     assert_refused(refusal(into, before, longer.bytes, longer.size), STF_ERROR_ALTERED);

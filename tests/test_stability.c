@@ -735,6 +735,52 @@ static void infinite_forces_are_refused(void **state)
     }
 }
 
+static void fail_if_called(const void *records, size_t record_count, const stf_particles *particles, double time)
+{
+    (void)records, (void)particles, (void)time;
+    fail_msg("called with %zu records", record_count);
+}
+
+/* It has records, if only of one byte, and none are there. */
+static void a_force_that_sleeps_is_not_asked_for_its_share(void **state)
+{
+    (void)state;
+    static const stf_force asleep = {.name = "asleep", .record_size = 1, .apply = fail_if_called};
+    stf_world *world = oscillator(&stf_rk4, 1e-3);
+
+    assert_ok(stf_world_add_force(world, &asleep, NULL, 0, NULL));
+    assert_int_equal(stability_of(world).force, stf_world_force_at(world, 0));
+    stf_world_destroy(world);
+}
+
+/* Nothing is in motion and no place is better than another, so that no scale is given for speeds. The limit is k dt = 2. */
+static void drag_is_found_where_all_rests(void **state)
+{
+    (void)state;
+    stf_world *world = world_of(2, &stf_explicit_euler, 1e-3);
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &stf_force_linear_drag, &(stf_linear_drag){.coefficient = 10});
+    assert_close(stability_of(world).limit, 2 / 10.0, 0.02 * 2 / 10.0);
+    stf_world_destroy(world);
+}
+
+/* Time beyond the largest double, which steps of floats do not reach: no force can be asked. */
+static void a_world_past_all_time_is_refused(void **state)
+{
+    (void)state;
+    const double step = (double)REAL_MAX / 2;
+    stf_world *world = world_of(1, &stf_rk4, step);
+    stf_stability found = {.limit = 42};
+
+    assert_ok(stf_world_step(world, 9));
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    const stf_result result = stf_stability_measure(world, NULL, &found);
+    assert_int_equal(result, isfinite(stf_world_time(world)) ? STF_OK : STF_ERROR_NOT_FINITE);
+    assert_true((found.limit == 42) == (result != STF_OK));
+    stf_world_destroy(world);
+}
+
 static void come_to_rest(stf_system *s, stf_real dt)
 {
     (void)dt;
@@ -795,6 +841,9 @@ int main(void)
         cmocka_unit_test(a_call_changes_nothing_and_takes_the_accelerations_it_says),
         cmocka_unit_test(a_call_gives_back_all_memory_and_survives_a_lack_of_it),
         cmocka_unit_test(infinite_forces_are_refused),
+        cmocka_unit_test(a_force_that_sleeps_is_not_asked_for_its_share),
+        cmocka_unit_test(drag_is_found_where_all_rests),
+        cmocka_unit_test(a_world_past_all_time_is_refused),
         cmocka_unit_test(an_integrator_that_forgets_all_is_steady_and_one_that_explodes_never),
         cmocka_unit_test(a_tick_that_takes_too_many_substeps_has_no_advice),
     };

@@ -722,7 +722,12 @@ static void describe_says_each_thing_in_a_line(void **state)
 
     world = make_world((stf_world_def){.step = 1, .parallel = {.run = run_in_turn, .tasks = 3}});
     assert_true(describes(world, "world of 3 dimensions in " REAL_NAME ": 0 particles in 0 blocks of "));
-    assert_true(describes(world, "; a step in up to 3 parts\n"));
+    assert_true(describes(world, "; a step in up to 3 parts\n") && !describes(world, "rests of position and velocity"));
+    stf_world_destroy(world);
+
+    world = make_world((stf_world_def){.dimensions = 1, .compensated = true});
+    snprintf(expected, sizeof expected, "\n  rests of position and velocity               - %16.1f\n", 2 * real);
+    assert_true(describes(world, expected));
     stf_world_destroy(world);
 }
 
