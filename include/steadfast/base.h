@@ -73,7 +73,7 @@ typedef enum stf_result {
 /* One English sentence about `result`, without a full stop. Never NULL; static storage. */
 STF_API const char *stf_result_text(stf_result result);
 
-/* The version of the library that is linked, "major.minor.patch"; compare with STF_VERSION_* of these headers. */
+/* The version of the library that is linked, "0.1.0"; that of these headers is STF_VERSION_MAJOR, _MINOR and _PATCH. */
 STF_API const char *stf_version(void);
 
 /*
@@ -94,8 +94,9 @@ typedef struct stf_allocator {
  * and returns when all are done. All zero: the caller's thread does all. The bits never depend on it, as long as all threads
  * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
  * force acts; else for each acceleration, each round of a link in it, each loop of the integrator, and every
- * STF_SETTLE_TICKS ticks; and for the looks of a guard. A task wants some 16 KiB of stack. An index stands for the same share of the particles at each
- * call: a thread that takes the same one each time finds them in its own cache.
+ * STF_SETTLE_TICKS ticks; and for the looks of a guard. What is too small to gain stays on the caller's thread: a world of
+ * one block, and without links one of fewer than eight (some 2,000 floats). Rounds apart, an index has the same particles in
+ * every call, which on the same thread are in its cache. A task wants some 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);

@@ -34,8 +34,7 @@ typedef struct stf_clock_def {
     double step;           /* s a tick; 0: STF_DEFAULT_STEP */
     unsigned max_ticks;    /* the most ticks that one frame may ask for; 0: as many as make 0.25 s of simulated time, at least
                               1. A time scale of 20 at 30 frames a second wants more than that default */
-    double display_period; /* s from one refresh of the display to the next, e.g. 1 / 59.94; 0: unknown, frames are not
-                              snapped */
+    double display_period; /* s from one refresh of the display to the next, e.g. 1 / 59.94; 0: unknown, no frame is snapped */
     double time_scale;     /* simulated seconds a real second; 0: 1 (to start paused, set 0 with stf_clock_set_time_scale) */
 } stf_clock_def;
 

@@ -76,10 +76,9 @@ typedef struct stf_force {
     bool splits;         /* a link force whose apply may be called for several ranges of particles at once; see above */
 
     /*
-     * Instead of splits, never beside it, for a link force whose sums at two ends come out of one computation: how many
-     * rounds it takes. apply is then called for each round from 0 on, for all parts of a round before the next; in part p of
-     * n it does piece p, p + n, p + 2 n, ... of the round's work. No two pieces of a round may touch the same particle. NULL:
-     * none.
+     * Instead of splits, never beside it, for a link force whose sums at two ends come out of one computation: how many rounds
+     * it takes. apply is then called for each round from 0 on, for all parts of a round before the next; in part p of n it does
+     * piece p, p + n, p + 2 n, ... of the round's work. No two pieces of a round may touch the same particle. NULL: none.
      */
     size_t (*rounds)(size_t record_count, const stf_particles *all);
 

@@ -16,13 +16,14 @@
  * Sources: D. A. Knoll, D. E. Keyes, J. Comput. Phys. 193, 357 (2004), sec. 2.3 (differences); Z. Bai, Y. Su, SIAM J. Matrix
  * Anal. Appl. 26, 640 (2005) (reduction); F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001) (modes of x'' = A x + B x').
  *
- * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit
- * that comes closer) wants another look. Modes that are much slower than the fastest (some 1/20 in float, 1/1000 in
- * double) are not told from free motion. Where dampers are in proportion to springs, limits are right within 2 %. In 20
- * nets of 200 masses with springs and dampers of all kinds, limits were up to some 20 % too long; the advice, which keeps away
- * from them by STF_STABILITY_SAFETY, held in all. Explicit Euler is the exception: it is limited by the least damped mode,
- * which in large nets hides among the others, and its limit may be off by half. Where springs buckle, the limits of
- * midpoint and improved Euler may be too short.
+ * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit that
+ * comes closer) wants another look. Modes that are much slower than the fastest, growth among them (some 1/20 in float, 1/6 in
+ * nets; 1/1000 in double), are not told from free motion: beside a growth, a limit of INFINITY only says that no mode could be
+ * told, as in a rope that a step of far too long has crumpled. Where dampers are in proportion to springs, limits are right
+ * within 2 %. In 20 nets of 200 masses with springs and dampers of all kinds, limits were up to some 20 % too long; the
+ * advice, which keeps away from them by STF_STABILITY_SAFETY, held in all. Explicit Euler is the exception: it is limited by
+ * the least damped mode, which in large nets hides among the others, and its limit may be off by half. Where springs buckle,
+ * the limits of midpoint and improved Euler may be too short.
  */
 #ifndef STEADFAST_STABILITY_H
 #define STEADFAST_STABILITY_H
@@ -48,7 +49,7 @@ typedef struct stf_stability_def {
 
 /* "The mode" is the one that sets the limit. Where nothing does, particle is SIZE_MAX, and force, omega and damping are 0. */
 typedef struct stf_stability {
-    double limit;          /* s, the step of the integrator beyond which it grows; 0: it grows at every step; INFINITY: none */
+    double limit;          /* s, the step of the integrator beyond which it grows; 0: at every step; INFINITY: none found */
     double step;           /* s, the present one: step of the world / substeps */
     double load;           /* step / limit: below 1 it is steady, from 1 on it grows */
     double omega;          /* rad/s: sqrt(stiffness / mass) of the mode */
@@ -67,7 +68,7 @@ typedef struct stf_stability {
  * Measures the world where it stands, at its present integrator, and changes nothing. Errors: NULL, MEMORY, DESCRIPTOR
  * (half an allocator), NOT_FINITE (positions, velocities or accelerations). Cost: at most def->accelerations of the world,
  * s of them, and some 2 s^2 operations for each component of a particle: 8 ms for the demo's cloth. Memory, for the time
- * of the call: 8 s bytes for each component of a particle (1.5 kB for one in 3D), and 150 kB.
+ * of the call: at most 8 s + 72 bytes for each component of a particle, in whole blocks (1.7 kB for one in 3D), and 150 kB.
  */
 STF_API stf_result stf_stability_measure(const stf_world *world, const stf_stability_def *def, stf_stability *stability);
 

@@ -52,9 +52,8 @@ typedef struct stf_world_def {
     stf_parallel parallel;            /* all zero: no threads; else your own forces and integrators are called from several */
 } stf_world_def;
 
-/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, SUBSTEPS, NOT_FINITE (gravity), DESCRIPTOR (integrator,
-   also one without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS
-   (guard). */
+/* Makes a world in *world. Errors: NULL, MEMORY, DIMENSIONS, STEP, SUBSTEPS, NOT_FINITE (gravity), DESCRIPTOR (integrator, also
+   one without STF_COMPENSATES in a world that is compensated; half an allocator; tasks without run), PARAMETERS (guard). */
 STF_API stf_result stf_world_create(const stf_world_def *def, stf_world **world);
 
 /* Frees a world. NULL is fine. */
