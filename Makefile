@@ -133,7 +133,7 @@ help:
 	@echo "make determinism     the same bits with every compiler, instruction set, number of threads and machine here; long"
 	@echo "make deps-cross      install the compilers and emulators of other machines for it"
 	@echo "make soak            an hour of simulated play with each integrator: no drift of time, no growth of memory; a minute"
-	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in four minutes"
+	@echo "make coverage        what of the library's lines and branches the tests reach, with gcc, in some six minutes"
 	@echo "make analyse         cppcheck, tidy, analyser (gcc's), tsan, valgrind: each is a target; first make deps ALSO=analyse"
 	@echo "make mutants         how many of 200 one-token faults the tests notice; MUTANTS=400 SEED=2 FILES='src/clock.c'"
 	@echo "make fuzz            both fuzz targets, FUZZ_SECONDS=60 with each fuzzer; make fuzz-coverage: what their inputs reach"
