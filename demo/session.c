@@ -173,7 +173,10 @@ stf_result session_advance(session *s, double frame_seconds)
     const uint64_t left = s->last_tick - stf_world_ticks(s->main.world);
     s->ticks_this_frame = due < left ? due : (unsigned)left;
     bad = run(s, s->ticks_this_frame, UINT64_MAX);
-    s->alpha = session_has_ended(s) ? 1 : stf_clock_alpha(&s->clock);
+    if (session_has_ended(s) || (s->paused && s->ticks_this_frame > 0)) /* a single step shows what its figures are of */
+        s->alpha = 1;
+    else if (!s->paused)
+        s->alpha = stf_clock_alpha(&s->clock);
     return bad;
 }
 
