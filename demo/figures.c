@@ -122,7 +122,7 @@ static void add_error(figures *f, const session *s, const actor *a)
     } else {
         const char *label = count == 1 ? "position error" : known == 1 ? "error" : "error, rms";
         add_number(f, COLOUR_TEXT, label, scene_error(of, a->world), of->length_unit);
-        snprintf(text, sizeof text, "%lu of %lu particles", (unsigned long)known, (unsigned long)count);
+        snprintf(text, sizeof text, "known for %lu of %lu", (unsigned long)known, (unsigned long)count);
         if (known < count)
             add_row(f, COLOUR_MUTED, "", text);
     }
@@ -158,6 +158,8 @@ static void add_stability(figures *f, const session *s)
     } else if (percent > 100 * STF_STABILITY_SAFETY) {
         snprintf(text, sizeof text, "close: %.0f %% of the limit", percent);
         add_row(f, COLOUR_CLOSE, "stability", text);
+    } else if (percent == 0 && now->growth > 0) { /* what flies apart hides what swings: see stability.h */
+        add_row(f, COLOUR_CLOSE, "stability", "no limit told: flies apart");
     } else {
         snprintf(text, sizeof text, percent > 0 ? "steady: %.2g %% of the limit" : "steady: no limit", percent);
         add_row(f, COLOUR_STEADY, "stability", text);

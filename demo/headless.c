@@ -108,8 +108,8 @@ static void print_summary(const session *s)
     print_integrator("integrator", s->settings.integrator);
     printf("step            %.9g %s, %u substep%s\n", s->settings.step, of->time_unit, s->settings.substeps,
            s->settings.substeps == 1 ? "" : "s");
-    printf("time            %.9g %s, %llu ticks\n", stf_world_time(s->main.world), of->time_unit,
-           (unsigned long long)stf_world_ticks(s->main.world));
+    printf("time            %.9g %s, %llu tick%s\n", stf_world_time(s->main.world), of->time_unit,
+           (unsigned long long)stf_world_ticks(s->main.world), stf_world_ticks(s->main.world) == 1 ? "" : "s");
     print_measured(s, &s->main);
     if (s->ghost.world) {
         print_integrator("ghost", s->settings.ghost);

@@ -54,7 +54,7 @@ static void draw_integrators(canvas *c, double x, double y)
 
 void hud_draw_help(canvas *c)
 {
-    const double u = (double)c->unit, height = (2 * PADDING + 34 + LINE * (KEYS + 2) + 8) * u;
+    const double u = (double)c->unit, height = (2 * PADDING + 34 + LINE * (KEYS + 3) + 8) * u;
     const double left = (c->width - WIDTH * u) / 2, top = (c->height - height) / 2;
     const double x = left + PADDING * u;
     double y = top + PADDING * u;
@@ -74,4 +74,6 @@ void hud_draw_help(canvas *c)
               "Another integrator, ghost, step or substeps starts the scene over: all figures are of one setting.");
     draw_text(c, TEXT_SMALL, ALIGN_LEFT, x, y + (8 + LINE) * u, COLOUR_MUTED,
               "Energies are looked at once a frame: what is largest in between is not seen.");
+    draw_text(c, TEXT_SMALL, ALIGN_LEFT, x, y + (8 + 2 * LINE) * u, COLOUR_MUTED,
+              "Cost is of ticks between frames, with cold caches; --headless runs them in a row and shows it warm.");
 }

@@ -262,7 +262,8 @@ void stage_legend(canvas *c, const session *s, double right, double y)
     const double width = legend_width(c, s), margin = 8 * unit;
 
     /* What has blown up must not make it unreadable. */
-    const SDL_FRect ground = {(float)(right - width), (float)(y - margin / 2), (float)(width + margin), (float)(height + margin)};
+    const SDL_FRect ground = {(float)(right - width), (float)(y - margin / 2), (float)(width + margin),
+                              (float)(height + margin)};
     draw_box(c, ground, 0, faded(COLOUR_GROUND, 0.8));
 
     if (has_exact(s)) {
