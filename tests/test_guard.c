@@ -502,6 +502,35 @@ static void flags_of_the_engine_are_as_without_a_guard(void **state)
     feclearexcept(FE_ALL_EXCEPT);
 }
 
+static void setting_a_guard_leaves_the_flags_alone(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){0});
+
+    feclearexcept(FE_ALL_EXCEPT);
+    feraiseexcept(FE_DIVBYZERO);
+    assert_ok(stf_world_set_guard(world, (stf_guard){.mode = STF_GUARD_REPORT}));
+    assert_true(fetestexcept(WATCHED_FLAGS) == FE_DIVBYZERO || !raises_flags());
+    feclearexcept(FE_ALL_EXCEPT);
+    stf_world_destroy(world);
+}
+
+/* The interval of 256 ticks that had begun is one of 16 from then on; no flag tells of a NaN that is read. */
+static void a_link_brings_the_next_look_forward(void **state)
+{
+    (void)state;
+    stf_world *world = make_world((stf_world_def){.step = STEP, .guard = {.mode = STF_GUARD_REPORT}});
+
+    assert_ok(stf_world_add(world, &(stf_particle){.inverse_mass = 1}, NULL));
+    add_force(world, &bomb_force, &(bomb){.from = 5 * STEP, .until = 100, .push = (stf_real)NAN, .divisor = 1});
+    assert_ok(stf_world_step(world, 2));
+    add_force(world, &idle_link, NULL);
+    while (!stf_world_step(world, 1))
+        assert_true(stf_world_ticks(world) < 16);
+    assert_fault(world, (stf_fault){.tick = 6, .kind = STF_FAULT_VELOCITY_NOT_FINITE});
+    stf_world_destroy(world);
+}
+
 static void no_step_allocates_and_a_guard_without_memory_is_refused(void **state)
 {
     (void)state;
@@ -668,7 +697,8 @@ static void looks_in_parts_see_and_keep_every_particle(void **state)
                                .gravity = {0, -1, 0}, .parallel = {.run = run_elsewhere, .tasks = 3}};
     const uint64_t bad[] = {3, CROWD / 2, CROWD - 1};
 
-    for (size_t k = 0; k < COUNT_OF(bad); k++) {
+    for (size_t k = 0; k < 2 * COUNT_OF(bad); k++) {
+        const bool overflows = k >= COUNT_OF(bad); /* which the flags of that part's thread tell, long before a look */
         stf_world *worlds[2] = {make_world(def), make_world(def)};
         stf_fault expected = {.kind = STF_FAULT_NONE};
 
@@ -677,9 +707,10 @@ static void looks_in_parts_see_and_keep_every_particle(void **state)
                 assert_ok(stf_world_add(worlds[w], &(stf_particle){.position.x = (stf_real)i, .velocity.x = (stf_real)(i % 7),
                                                                    .inverse_mass = 1}, NULL));
             add_force(worlds[w], &bomb_force,
-                      &(bomb){.from = 6 * STEP, .until = 1, .particle = bad[k], .push = 10000, .divisor = 1});
+                      &(bomb){.from = 6 * STEP, .until = 1, .particle = bad[k % COUNT_OF(bad)],
+                              .push = overflows ? REAL_MAX : 10000, .divisor = (stf_real)0.5});
         }
-        assert_ok(stf_world_set_guard(worlds[0], guard_of(&bounded, STF_GUARD_FREEZE, 4)));
+        assert_ok(stf_world_set_guard(worlds[0], guard_of(&bounded, STF_GUARD_FREEZE, overflows && raises_flags() ? 1000 : 4)));
         assert_refused(stf_world_step(worlds[0], 12), STF_ERROR_DIVERGED);
 
         saved good = {.bytes = NULL};
@@ -726,6 +757,8 @@ int main(void)
         cmocka_unit_test(looks_are_at_ticks_that_the_interval_divides),
         cmocka_unit_test(flags_do_not_bring_a_look_at_the_bounds_forward),
         cmocka_unit_test(flags_of_the_engine_are_as_without_a_guard),
+        cmocka_unit_test(setting_a_guard_leaves_the_flags_alone),
+        cmocka_unit_test(a_link_brings_the_next_look_forward),
         cmocka_unit_test(no_step_allocates_and_a_guard_without_memory_is_refused),
         cmocka_unit_test(a_world_that_moves_in_memory_freezes_where_it_would),
         cmocka_unit_test(loading_and_restoring_keep_the_guard_and_clear_the_fault),
