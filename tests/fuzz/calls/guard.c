@@ -1,6 +1,6 @@
 /* The guard: that of the two worlds, which may only report, and that of a third, which freezes. */
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
 #include "game.h"
 
@@ -141,6 +141,8 @@ void freeze(game *g)
     rations[0].closed = true;
     const stf_result result = stf_world_step(world, ticks);
     rations[0].closed = false;
+    if (fuzz_verbose)
+        printf("%-20s%s\n", "freeze", stf_result_text(result));
     if (result)
         claim(result == STF_ERROR_DIVERGED && (claim_frozen(world, shadow, guard), true));
     else {
