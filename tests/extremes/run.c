@@ -1,4 +1,4 @@
-/* Ten million ticks in one call, and ticks past 2^32. */
+/* Ten million ticks in one run, and ticks past 2^32. */
 #include <string.h>
 
 #include "lab.h"
@@ -7,19 +7,49 @@
 #define STEP (1.0 / 60) /* s */
 #define ROUNDINGS 8
 
-/* The walk of distance.c for days: from 0 on, so that reals lie further and further apart. */
-static void walk(cell *c, const char *integrator, double ticks, bool compensated)
+/* Every run is made twice: in one call, and with so many looks on the way. Both end with the same bits. */
+#define LOOKS 1000
+
+static void expect_same_end(cell *c, const stf_world *world, const stf_world *other, uint64_t ticks)
 {
-    const double end = ticks * STEP, spaces = compensated ? 1 : ticks / 2;
+    const stf_particle p = lab_particle(world, 0), q = lab_particle(other, 0);
+
+    EXPECT(c, memcmp(&p, &q, sizeof p) == 0);
+    EXPECT(c, stf_world_ticks(world) == ticks && stf_world_ticks(other) == ticks);
+    EXPECT(c, stf_world_time(world) == stf_world_time(other));
+}
+
+/* The walk of distance.c for days: from 0 on, so that reals lie further and further apart. */
+static stf_world *walk_world(const char *integrator, bool compensated)
+{
     stf_world *world = lab_world(integrator, (stf_world_def){.step = STEP, .compensated = compensated});
 
     lab_add(world, 0, 1, 1);
-    MUST(stf_world_step(world, (unsigned)ticks));
-    EXPECT(c, stf_world_ticks(world) == (uint64_t)ticks && stf_world_time(world) == end);
-    /* half a space a tick, the spaces growing with x: their mean over the way is at most that at the end; or one in all */
+    return world;
+}
+
+/* Half a space a tick, the spaces growing with x: their mean over the way is at most that at the end. Or one in all. */
+static void expect_walk(cell *c, const stf_world *world, bool compensated)
+{
+    const double ticks = (double)stf_world_ticks(world), end = ticks * STEP, spaces = compensated ? 1 : ticks / 2;
+
+    EXPECT(c, stf_world_time(world) == end);
     EXPECT_CLOSE(c, lab_x(world, 0), end, spaces * lab_ulp(end) + ROUNDINGS * REAL_EPSILON * end);
     EXPECT(c, fabs(lab_v(world, 0) - 1) <= 2 * REAL_EPSILON);
-    cell_number(c, "off ", fabs(lab_x(world, 0) - end), " m");
+}
+
+static void walk(cell *c, const char *integrator, double ticks, bool compensated)
+{
+    stf_world *world = walk_world(integrator, compensated), *watched = walk_world(integrator, compensated);
+
+    for (int look = 0; look < LOOKS; look++) {
+        MUST(stf_world_step(watched, (unsigned)(ticks / LOOKS)));
+        expect_walk(c, watched, compensated);
+    }
+    MUST(stf_world_step(world, (unsigned)ticks));
+    expect_same_end(c, world, watched, (uint64_t)ticks);
+    cell_number(c, "off ", fabs(lab_x(world, 0) - ticks * STEP), " m");
+    stf_world_destroy(watched);
     stf_world_destroy(world);
 }
 
@@ -31,14 +61,15 @@ static const row lengths[] = {{"1e3 ticks", 1e3, false}, {"1e5 ticks", 1e5, fals
 
 AXIS(axis_run_flight) = {
     .title = "A walk from the origin at 1 m/s and 60 ticks a second, by the ticks of one call",
-    .holds = "Off by at most half a space between reals a tick; time = ticks x step exactly.",
+    .holds = "At each of 1,000 looks on the way off by at most half a space between reals a tick; time = ticks x step\n"
+             "exactly. In one call it ends with the same bits. The number: off at the end.",
     ROWS(lengths),
     .run = flight,
 };
 
 AXIS(axis_run_compensated) = {
     .title = "The same walk in a compensated world",
-    .holds = "Off by at most a space between reals in all, and by what v dt itself is off.",
+    .holds = "At each look off by at most a space between reals in all, and by what v dt itself is off.",
     ROWS(lengths),
     .run = compensated_flight,
 };
@@ -70,14 +101,27 @@ static double swing_of(const char *integrator, double z)
 /* Roundings of a tick are a random walk of the amplitude: six standard deviations. */
 static double walk_of(double ticks) { return 6 * ROUNDINGS * sqrt(ticks) * REAL_EPSILON; }
 
-/* Steps to where |R|^n leaves the reals, and looks for it tick by tick for a swing and what roundings put it off by. */
-static void expect_leaving(cell *c, stf_world *world, double tick, double growth)
+static stf_world *spring_world(const char *integrator)
 {
-    const unsigned slack = (unsigned)(SWING + walk_of(tick) / log(growth)), first = (unsigned)tick - slack;
+    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1, .dimensions = 1});
+
+    lab_add(world, 1, 0, 1);
+    lab_force(world, &stf_force_anchored_springs, &(stf_anchored_spring){.stiffness = (stf_real)Z_SQUARE});
+    return world;
+}
+
+/* How far from the tick at which |R|^n leaves the reals it may be: a swing, and what roundings put it off by. */
+static double slack_of(double tick, double growth) { return SWING + walk_of(tick) / log(growth); }
+
+/* Steps to where |R|^n leaves the reals, and looks for it tick by tick. */
+static void expect_leaving(cell *c, const char *integrator, double tick, double growth)
+{
+    const unsigned slack = (unsigned)slack_of(tick, growth);
+    stf_world *world = spring_world(integrator);
     bool found = false;
     size_t index = 1;
 
-    MUST(stf_world_step(world, first));
+    MUST(stf_world_step(world, (unsigned)tick - slack));
     EXPECT(c, !stf_world_find_non_finite(world, NULL));
     for (unsigned n = 0; n < 2 * slack && !found; n++) {
         MUST(stf_world_step(world, 1));
@@ -85,41 +129,53 @@ static void expect_leaving(cell *c, stf_world *world, double tick, double growth
     }
     EXPECT(c, found && index == 0);
     cell_tick(c, "non-finite", stf_world_ticks(world));
+    stf_world_destroy(world);
+}
+
+/* Returns the energy over that of the start. */
+static double expect_energy(cell *c, const stf_world *world, double growth)
+{
+    const double ticks = (double)stf_world_ticks(world), factor = energy_of(world) / (Z_SQUARE / 2);
+    const double expected = exp(2 * ticks * log(growth));
+    const double most = swing_of(stf_world_integrator(world)->name, sqrt(Z_SQUARE)) * (1 + 2 * walk_of(ticks));
+
+    EXPECT(c, factor <= expected * most && factor >= expected / most);
+    return factor;
 }
 
 static void spring(cell *c, const char *integrator, const row *at)
 {
-    const double z = sqrt(Z_SQUARE), growth = theory_spring_growth(integrator, z), ticks = at->value;
+    const double growth = theory_spring_growth(integrator, sqrt(Z_SQUARE)), ticks = at->value;
     const double leaving = growth > 1 ? log((double)REAL_MAX) / 2 / log(growth) : (double)INFINITY; /* x^2 is past the reals */
-    stf_world *world = lab_world(integrator, (stf_world_def){.step = 1, .dimensions = 1});
+    const double slack = growth > 1 ? slack_of(leaving, growth) : 0;
+    stf_world *world = spring_world(integrator), *watched = spring_world(integrator);
+    double factor = 1;
 
-    lab_add(world, 1, 0, 1);
-    lab_force(world, &stf_force_anchored_springs, &(stf_anchored_spring){.stiffness = (stf_real)Z_SQUARE});
-
-    const double start = energy_of(world);
-
-    if (leaving < ticks)
-        expect_leaving(c, world, leaving, growth);
-    MUST(stf_world_step(world, (unsigned)(ticks - (double)stf_world_ticks(world))));
-    EXPECT(c, stf_world_ticks(world) == (uint64_t)ticks && stf_world_time(world) == ticks);
-    if (leaving < ticks)
-        EXPECT(c, !isfinite(energy_of(world)));
-    else {
-        const double factor = energy_of(world) / start, expected = exp(2 * ticks * log(growth));
-        const double most = swing_of(integrator, z) * (1 + 2 * walk_of(ticks));
-        EXPECT(c, factor <= expected * most && factor >= expected / most);
-        if (fabs(factor - 1) < 0.5)
-            cell_change(c, "energy", factor - 1);
-        else
-            cell_number(c, "energy x", factor, "");
+    for (double n = ticks / LOOKS; n <= ticks; n += ticks / LOOKS) {
+        MUST(stf_world_step(watched, (unsigned)(ticks / LOOKS)));
+        EXPECT(c, stf_world_time(watched) == n);
+        if (n < leaving - slack)
+            factor = expect_energy(c, watched, growth);
+        else if (n > leaving + slack)
+            EXPECT(c, !isfinite(energy_of(watched)));
     }
+    MUST(stf_world_step(world, (unsigned)ticks));
+    expect_same_end(c, world, watched, (uint64_t)ticks);
+    if (leaving < ticks)
+        expect_leaving(c, integrator, leaving, growth);
+    else if (fabs(factor - 1) < 0.5)
+        cell_change(c, "energy", factor - 1);
+    else
+        cell_number(c, "energy x", factor, "");
+    stf_world_destroy(watched);
     stf_world_destroy(world);
 }
 
 AXIS(axis_run_spring) = {
     .title = "A spring of 50 ticks a swing, by the ticks of one call",
-    .holds = "The energy is that of the start times |R(iz)|^2n, within the swing of the symplectic methods and a random walk\n"
-             "of roundings; or it is past the reals, at the tick at which theory says so, to a swing.",
+    .holds = "The energy is, at each of 1,000 looks on the way, that of the start times |R(iz)|^2n, within the swing of the\n"
+             "symplectic methods and a random walk of roundings; or it is past the reals, at the tick at which theory says\n"
+             "so, to a swing. In one call it ends with the same bits.",
     ROWS(lengths),
     .run = spring,
 };
