@@ -34,6 +34,15 @@ void cell_expect_close(cell *c, double actual, double expected, double tolerance
                  tolerance);
 }
 
+bool cell_expect_ok(cell *c, stf_result result, const char *file, int line)
+{
+    if (result && !c->broken[0]) {
+        snprintf(c->broken, sizeof c->broken, "%s:%d: %s", file, line, stf_result_text(result));
+        cell_word(c, "refused");
+    }
+    return !result;
+}
+
 void matrix_must(stf_result result, const char *file, int line)
 {
     if (!result)

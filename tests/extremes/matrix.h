@@ -28,8 +28,11 @@ void cell_tick(cell *c, const char *word, uint64_t tick);
 #define EXPECT(c, condition) cell_expect(c, condition, #condition, __FILE__, __LINE__)
 #define EXPECT_CLOSE(c, actual, expected, tolerance) \
     cell_expect_close(c, (double)(actual), (double)(expected), (double)(tolerance), #actual, __FILE__, __LINE__)
+/* Breaks the cell for an error, with what it says: for what a smaller machine may refuse. Returns whether there was none. */
+#define EXPECT_OK(c, result) cell_expect_ok(c, result, __FILE__, __LINE__)
 void cell_expect(cell *c, bool holds, const char *what, const char *file, int line);
 void cell_expect_close(cell *c, double actual, double expected, double tolerance, const char *what, const char *file, int line);
+bool cell_expect_ok(cell *c, stf_result result, const char *file, int line);
 
 /* For what a cell needs before it can say anything: ends the program with one line if it fails. */
 #define MUST(result) matrix_must(result, __FILE__, __LINE__)
