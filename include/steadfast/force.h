@@ -134,7 +134,8 @@ static inline void *stf_force_arranged(const void *records, size_t record_count,
            (record_count * record_size + 63) / 64 * 64;
 }
 
-/* F = -k v. The lecture's drag; Stokes drag on a sphere of radius r has k = 6 pi eta r. Cost: no loop. No potential. */
+/* F = -k v. The lecture's drag; Stokes drag on a sphere of radius r has k = 6 pi eta r. Of several the sum acts, at most the
+   largest real. Cost: no loop. No potential. */
 typedef struct stf_linear_drag {
     stf_real coefficient; /* k, kg/s, 0 or more */
 } stf_linear_drag;

@@ -12,11 +12,11 @@
 static const char *const precisions[] = {"float", "double"};
 
 #define AXES(X) \
-    X(axis_step) X(axis_step_end) X(axis_drag) X(axis_spring) X(axis_mass_spring) \
+    X(axis_step) X(axis_step_end) X(axis_drag) X(axis_drag_sum) X(axis_drag_quadratic) X(axis_spring) X(axis_mass_spring) \
     X(axis_mass_gravity) X(axis_distance) X(axis_distance_compensated) X(axis_distance_spring) X(axis_velocity) \
     X(axis_scale_springs) X(axis_scale_attractor) X(axis_scale_all_pairs) X(axis_scale_drag) X(axis_coincident) \
     X(axis_through) X(axis_count) X(axis_count_pairs) X(axis_count_guard) X(axis_count_rope) X(axis_run_flight) \
-    X(axis_run_compensated) X(axis_run_spring) X(axis_ticks)
+    X(axis_run_compensated) X(axis_run_spring) X(axis_bias) X(axis_ticks)
 
 #define DECLARE(name) extern const axis name##_float, name##_double;
 #define LIST(name) {&name##_float, &name##_double},
