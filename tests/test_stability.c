@@ -765,6 +765,25 @@ static void drag_is_found_where_all_rests(void **state)
     stf_world_destroy(world);
 }
 
+/* A position that overflows, and a velocity. */
+static void a_state_that_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    for (unsigned pushed = 0; pushed < 2; pushed++) {
+        stf_world *world = world_of(1, &stf_explicit_euler, 4);
+        stf_stability found = {.limit = 42};
+
+        assert_ok(stf_world_add(world, &(stf_particle){.velocity.x = REAL_MAX, .inverse_mass = 1}, NULL));
+        if (pushed)
+            assert_ok(stf_world_set_gravity(world, (stf_vector){REAL_MAX, 0, 0}));
+        assert_ok(stf_world_step(world, 1));
+        assert_true(isfinite(particle_of(world, 0).velocity.x) == !pushed && !isfinite(particle_of(world, 0).position.x));
+        assert_refused(stf_stability_measure(world, NULL, &found), STF_ERROR_NOT_FINITE);
+        assert_true(found.limit == 42);
+        stf_world_destroy(world);
+    }
+}
+
 /* Time beyond the largest double, which steps of floats do not reach: no force can be asked. */
 static void a_world_past_all_time_is_refused(void **state)
 {
@@ -843,6 +862,7 @@ int main(void)
         cmocka_unit_test(infinite_forces_are_refused),
         cmocka_unit_test(a_force_that_sleeps_is_not_asked_for_its_share),
         cmocka_unit_test(drag_is_found_where_all_rests),
+        cmocka_unit_test(a_state_that_is_not_finite_is_refused),
         cmocka_unit_test(a_world_past_all_time_is_refused),
         cmocka_unit_test(an_integrator_that_forgets_all_is_steady_and_one_that_explodes_never),
         cmocka_unit_test(a_tick_that_takes_too_many_substeps_has_no_advice),
