@@ -367,10 +367,15 @@ static void play_loses_no_time_no_memory_and_no_particle(void **state)
 
 int main(int argc, char **argv)
 {
-    double seconds = argc > 1 ? strtod(argv[1], NULL) : 60;
+    char *end = NULL;
+    double seconds = argc > 1 ? strtod(argv[1], &end) : 60;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(play_loses_no_time_no_memory_and_no_particle, &seconds),
     };
 
+    if (argc > 1 && (*end || !(seconds > 0))) {
+        fprintf(stderr, "soak: wants seconds of play, above 0, and not \"%s\"\n", argv[1]);
+        return 2;
+    }
     return cmocka_run_group_tests_name("soak, " REAL_NAME, tests, NULL, NULL);
 }

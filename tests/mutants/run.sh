@@ -11,6 +11,7 @@ JOBS=${JOBS:-$(getconf _NPROCESSORS_ONLN)}
 hung=137 # killed: its time was up
 work=build/mutants build=build/$(basename "${CC%% *}")-release
 fail() { echo "steadfast: $*" >&2; exit 1; }
+case $MUTANTS in '' | 0* | *[!0-9]*) fail "MUTANTS wants a whole number from 1 on, not '$MUTANTS'" ;; esac
 pkg-config --exists cmocka || fail "the tests need cmocka; type: make deps"
 
 # The baseline's loops alone: the other instruction sets are the same source. A function that returns nothing is no mutant.
