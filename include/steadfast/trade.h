@@ -115,7 +115,7 @@ typedef struct stf_trade_def {
     size_t steps_count;
     unsigned repeats;      /* 0: 25 */
     double repeat_seconds; /* how long one repeat of one row takes at least; of a longer run the start is timed; at most some
-                              hundred times that, however coarse the timer is; 0: 0.00025 */
+                              hundred times that, however coarse the timer is, or 100,000 runs; 0: 0.00025 */
     double (*seconds)(void *user);                           /* a timer, with `user`; NULL: C's clock() */
     void (*progress)(void *user, size_t done, size_t total); /* called now and then, with `user`; NULL */
     stf_allocator allocator;                                 /* all zero: malloc and free */
