@@ -546,6 +546,33 @@ static void links_of_the_library_run_within_the_parts(void **state)
     }
 }
 
+/* Its record says where to count the calls that are of no particles, or of a part of a round. */
+static void count_odd_calls(const void *records, size_t record_count, const stf_particles *all, double time)
+{
+    unsigned *const *odd = (unsigned *const *)records;
+    (void)record_count, (void)time;
+
+    **odd += all->begin >= all->end || all->round != 0 || all->part != 0 || all->parts != 1;
+}
+
+/* Alone, and beside a link that does not split: then link comes after link. */
+static void a_link_that_splits_has_no_rounds(void **state)
+{
+    (void)state;
+    const stf_force link = {.name = "odd", .kind = STF_LINK, .splits = true, .record_size = sizeof(unsigned *),
+                            .apply = count_odd_calls};
+    uint64_t seed = 1;
+    unsigned odd = 0, *record = &odd;
+    stf_world *world = tied_world(&stf_rk4, LARGEST, &link, (stf_parallel){.run = run_shuffled, .tasks = 2, .user = &seed});
+
+    assert_ok(stf_world_set_force(world, stf_world_force_at(world, 1), &record, 1));
+    assert_ok(stf_world_step(world, 1));
+    add_force(world, &idle_link, NULL);
+    assert_ok(stf_world_step(world, 1));
+    assert_int_equal(odd, 0);
+    stf_world_destroy(world);
+}
+
 /* An engine may hand out more tasks than there are blocks, or just one. */
 static void parts_are_never_more_than_blocks(void **state)
 {
@@ -969,6 +996,7 @@ int main(void)
         cmocka_unit_test(previous_positions_are_those_of_the_tick_before),
         cmocka_unit_test(parts_have_scratch_of_their_own),
         cmocka_unit_test(links_of_the_library_run_within_the_parts),
+        cmocka_unit_test(a_link_that_splits_has_no_rounds),
         cmocka_unit_test(parts_are_never_more_than_blocks),
         cmocka_unit_test(many_ticks_in_one_call_equal_one_tick_in_many),
         cmocka_unit_test(groups_of_ticks_change_no_bit),

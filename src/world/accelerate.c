@@ -89,18 +89,22 @@ typedef struct link_call {
     unsigned parts;
 } link_call;
 
-static void apply_link(const link_call *call, size_t begin_block, size_t end_block, unsigned part)
+/* A link that splits gets the particles of this part of the request, another its part of the round. */
+static void apply_link(const link_call *call, unsigned part)
 {
     const request *q = call->request;
-    const size_t stride = q->range->world->storage.stride;
+    const size_t stride = q->range->world->storage.stride, end = part_begin(q, part + 1) * stride;
     stf_particles all = stf_world_particles(q->range->world, q->range->first_block, q->range->blocks, q->position, q->velocity,
                                             q->acceleration);
 
-    all.begin = begin_block * stride;
-    all.end = end_block * stride < all.count ? end_block * stride : all.count;
-    all.round = call->round;
-    all.part = part;
-    all.parts = call->parts;
+    if (call->added->acting->splits) {
+        all.begin = part_begin(q, part) * stride;
+        all.end = end < all.count ? end : all.count;
+    } else {
+        all.round = call->round;
+        all.part = part;
+        all.parts = call->parts;
+    }
     call->added->acting->apply(call->added->records, call->added->record_count, &all, q->time);
 }
 
@@ -115,25 +119,18 @@ static size_t rounds_of(const request *q, const stf_added_force *added)
     return added->acting->rounds ? added->acting->rounds(added->record_count, &all) : 1;
 }
 
-/* All links on this thread; those that split, for these blocks. */
-static void apply_links(const request *q, size_t begin_block, size_t end_block)
+static void link_part(void *context, unsigned part) { apply_link(context, part); }
+
+/* All links on this thread, for one part of the request: the only one, or each link splits. */
+static void apply_links(const request *q, unsigned part)
 {
     for (size_t i = 0; i < q->range->world->force_count; i++) {
         link_call call = {.request = q, .added = &q->range->world->forces[i], .parts = 1};
         const size_t rounds = rounds_of(q, call.added);
 
         for (; call.round < rounds; call.round++)
-            apply_link(&call, begin_block, end_block, 0);
+            apply_link(&call, part);
     }
-}
-
-static void link_part(void *context, unsigned part)
-{
-    const link_call *call = context;
-    const bool splits = call->added->acting->splits;
-
-    apply_link(call, splits ? part_begin(call->request, part) : 0,
-               splits ? part_begin(call->request, part + 1) : call->request->range->blocks, part);
 }
 
 /* One link after another, each in as many parts as it allows. */
@@ -170,7 +167,7 @@ static void whole_part(void *context, unsigned part)
 
     apply_fields(q, part);
     if (q->range->is_tied)
-        apply_links(q, part_begin(q, part), part_begin(q, part + 1));
+        apply_links(q, part);
     forces_to_accelerations(q, part);
 }
 
