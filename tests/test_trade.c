@@ -232,6 +232,24 @@ static void a_run_that_is_not_finite_says_so(void **state)
     stf_trade_reference_destroy(reference);
 }
 
+static void against_a_reference_that_is_not_finite_errors_are_infinite(void **state)
+{
+    (void)state;
+    trade_scene lost = TRADE_LOST, rest = TRADE_REST;
+    const unsigned steps[] = {SAMPLES};
+    stf_trade_reference *reference = make_reference(&lost, false);
+    stf_trade_row rows[INTEGRATORS];
+
+    measure(&rest, reference, steps, 1, rows);
+    for (size_t i = 0; i < INTEGRATORS; i++) {
+        assert_true(rows[i].finite);
+        assert_false(stf_trade_error_is_known(&rows[i]));
+        assert_above(rows[i].end_error, DBL_MAX);
+        assert_above(rows[i].largest_error, DBL_MAX);
+    }
+    stf_trade_reference_destroy(reference);
+}
+
 /* ---- the reference --------------------------------------------------------------------------------------------------- */
 
 /* Against the exact solution: what a row's error changes by, if the reference is a run, is within what that says of itself. */
@@ -805,6 +823,7 @@ int main(void)
         cmocka_unit_test(orders_are_those_of_the_methods),
         cmocka_unit_test(a_run_that_explodes_is_neither_bounded_nor_picked),
         cmocka_unit_test(a_run_that_is_not_finite_says_so),
+        cmocka_unit_test(against_a_reference_that_is_not_finite_errors_are_infinite),
         cmocka_unit_test(a_run_is_as_good_a_reference_as_it_says),
         cmocka_unit_test(a_guard_of_the_scene_is_off),
         cmocka_unit_test(an_exact_solution_of_some_particles_is_none),

@@ -22,7 +22,6 @@
 #define REPEATS_MAX 100 /* as long as so many may one last that comes out longer than its estimate */
 #define TIMER_LOTS 10
 #define TIMER_CALLS 100
-#define NANO 1e9
 
 /* What a run works with: the def with its defaults, and what was found out on the way. */
 typedef struct job {
@@ -131,7 +130,7 @@ static void judge(const stf_trade_reference *r, const stf_world *world, unsigned
             row->bounded = row->bounded && fabs(x - r->middle[d]) <= bound;
         }
     row->finite = row->finite && !stf_world_find_non_finite(world, NULL);
-    row->end_error = row->finite ? stf_trade_rms(r, sum) : HUGE_VAL;
+    row->end_error = row->finite ? stf_trade_larger(0, stf_trade_rms(r, sum)) : HUGE_VAL; /* the reference may be a NaN */
     row->largest_error = stf_trade_larger(row->largest_error, row->end_error);
 
     stf_world_energy(world, &energy);
@@ -276,7 +275,7 @@ stf_result stf_trade_begin(const stf_trade_def *def, stf_trade_row *rows, stf_tr
                        .rows = rows,
                        .count = count,
                        .repeats = repeats,
-                       .nanoseconds = NANO / (r->duration * (double)(r->particles > 0 ? r->particles : 1)),
+                       .simulated = r->duration * (double)(r->particles > 0 ? r->particles : 1),
                        .seconds = (double *)(j + 1),
                        .progress = def->progress,
                        .user = def->user,

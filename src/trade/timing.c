@@ -4,6 +4,8 @@
 #include "../allocator.h"
 #include "trade.h"
 
+#define NANO 1e9
+
 void stf_trade_advance(stf_trade_run *run)
 {
     run->done++;
@@ -47,9 +49,9 @@ static void summarise(const stf_trade_run *run)
         double *repeats = &run->seconds[i * run->repeats];
 
         qsort(repeats, run->repeats, sizeof *repeats, by_size);
-        run->rows[i].nanoseconds = run->nanoseconds * quantile(repeats, run->repeats, 0.5);
-        run->rows[i].nanoseconds_low = run->nanoseconds * quantile(repeats, run->repeats, 0.25);
-        run->rows[i].nanoseconds_high = run->nanoseconds * quantile(repeats, run->repeats, 0.75);
+        run->rows[i].nanoseconds = NANO * quantile(repeats, run->repeats, 0.5) / run->simulated;
+        run->rows[i].nanoseconds_low = NANO * quantile(repeats, run->repeats, 0.25) / run->simulated;
+        run->rows[i].nanoseconds_high = NANO * quantile(repeats, run->repeats, 0.75) / run->simulated;
     }
 }
 

@@ -28,8 +28,8 @@ struct stf_trade_run {
     stf_trade_row *rows;
     size_t count;
     unsigned repeats;
-    double nanoseconds; /* a particle for each simulated second, in a run of 1 s */
-    double *seconds;    /* a whole run: [count][repeats]; in [row][0] at first what judging the row took */
+    double simulated; /* s, times particles */
+    double *seconds;  /* a whole run: [count][repeats]; in [row][0] at first what judging the row took */
     void (*progress)(void *user, size_t done, size_t total);
     void *user;
     size_t done, total; /* rows judged, and timed once */

@@ -1,5 +1,6 @@
 #include "support/trade_scene.h"
 
+#include <float.h>
 #include <math.h>
 
 #define GRAVITY 9.81
@@ -7,7 +8,7 @@
 
 #ifndef TRADE_SCENE_BUILDER_ONLY
 
-const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1, 1};
+const double trade_scene_durations[TRADE_SCENES] = {2, 8, 2, 8, 1, 1, 1, 4};
 stf_allocator trade_scene_allocator;
 stf_guard trade_scene_guard;
 
@@ -125,6 +126,13 @@ static stf_result add_crowd(stf_world *world)
 
 static stf_result add_rest(stf_world *world) { return add(world, 5.3, 0.1, 0, 0, 1); }
 
+static stf_result add_lost(stf_world *world)
+{
+    const double largest = sizeof(stf_real) == sizeof(double) ? DBL_MAX : (double)FLT_MAX;
+
+    return add(world, largest / 2, 0, largest / 2, 0, 1);
+}
+
 static stf_result add_nothing(stf_world *world)
 {
     (void)world;
@@ -134,7 +142,7 @@ static stf_result add_nothing(stf_world *world)
 stf_result trade_scene_build(void *user, stf_world **world)
 {
     static stf_result (*const populate[TRADE_SCENES])(stf_world *) = {
-        add_pendulum, add_binary, add_fall, add_chaos, add_rest, add_crowd, add_nothing};
+        add_pendulum, add_binary, add_fall, add_chaos, add_rest, add_crowd, add_nothing, add_lost};
     const trade_scene which = *(const trade_scene *)user;
     const bool falls = which == TRADE_PENDULUM || which == TRADE_FALL;
     const stf_world_def def = {.dimensions = 2, .gravity = {0, falls ? (stf_real)-GRAVITY : 0, 0},

@@ -17,6 +17,7 @@ typedef enum trade_scene {
     TRADE_REST,         /* nothing moves */
     TRADE_CROWD,        /* 600 particles, which fill several blocks, in drag */
     TRADE_EMPTY,        /* no particle */
+    TRADE_LOST,         /* one that leaves the reals of its precision at once */
     TRADE_SCENES
 } trade_scene;
 
