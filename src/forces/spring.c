@@ -1,6 +1,6 @@
 #include "spring.h"
 
-#include "../sort.h"
+#include "../spring_order.h"
 #include "steadfast/force.h"
 
 static stf_result spring_check(const void *record, unsigned dimensions, size_t particle_count)
@@ -28,153 +28,6 @@ static bool spring_renumber(void *record, size_t removed, size_t last)
     return true;
 }
 
-/*
- * Springs are kept in the order of the block of their lower end, then of the difference of their ends, then of the lower end.
- * Where both ends count up by one (a cloth's rows, columns and diagonals are such runs) vectors are loaded and stored whole.
- * Shorter runs are gathered and scattered.
- */
-#define RUN_MIN STF_ROW_MULTIPLE
-
-static uint32_t lower(const stf_spring *s) { return s->a < s->b ? s->a : s->b; }
-static uint32_t upper(const stf_spring *s) { return s->a < s->b ? s->b : s->a; }
-
-static int compare_numbers(uint32_t a, uint32_t b) { return (a > b) - (a < b); }
-
-/* By all fields in the end, so that the order never depends on that in which springs were given. */
-static int compare_springs(const void *left, const void *right)
-{
-    const stf_spring *a = left, *b = right;
-    int order = compare_numbers(lower(a) / STF_BLOCK_MAX, lower(b) / STF_BLOCK_MAX);
-
-    if (order == 0)
-        order = compare_numbers(upper(a) - lower(a), upper(b) - lower(b));
-    if (order == 0)
-        order = compare_numbers(lower(a), lower(b));
-    if (order == 0)
-        order = stf_compare_reals(a->stiffness, b->stiffness);
-    if (order == 0)
-        order = stf_compare_reals(a->damping, b->damping);
-    if (order == 0)
-        order = stf_compare_reals(a->rest_length, b->rest_length);
-    return order;
-}
-
-/* Springs that are computed together: a run, within one block at each end, or the loose ones of a group of blocks. */
-typedef struct stretch {
-    size_t first, count;   /* of the springs, or of the loose ones */
-    uint32_t lower, upper; /* ends of a run's first spring */
-    bool is_run;
-} stretch;
-
-/* What stands behind the records: stretches in the order of blocks, parameters as vectors are loaded, the loose springs. */
-typedef struct arrangement {
-    size_t stretch_count, loose_count;
-    stretch *stretches;
-    stf_real *stiffness, *damping, *rest_length;
-    stf_spring *loose;
-} arrangement;
-
-/* Behind any run may be one stretch of loose springs. */
-static size_t stretches_max(size_t spring_count) { return 2 * (spring_count / RUN_MIN) + 1; }
-
-static size_t arranged_size(size_t spring_count)
-{
-    const size_t each = sizeof(stretch) + 3 * sizeof(stf_real) + sizeof(stf_spring);
-
-    if (spring_count > SIZE_MAX / 2 / each)
-        return SIZE_MAX;
-    return sizeof(arrangement) + stretches_max(spring_count) * sizeof(stretch) +
-           spring_count * (3 * sizeof(stf_real) + sizeof(stf_spring));
-}
-
-static bool same_block(uint32_t a, uint32_t b) { return a / STF_BLOCK_MAX == b / STF_BLOCK_MAX; }
-
-/* How many springs from here on are a run. */
-static size_t run_length(const stf_spring *springs, size_t count)
-{
-    const uint32_t first_lower = lower(springs), first_upper = upper(springs);
-    size_t n = 1;
-
-    while (n < count && lower(&springs[n]) == first_lower + n && upper(&springs[n]) == first_upper + n &&
-           same_block(lower(&springs[n]), first_lower) && same_block(upper(&springs[n]), first_upper))
-        n++;
-    return n;
-}
-
-static void add_run(arrangement *to, const stf_spring *springs, size_t first, size_t count)
-{
-    to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count, .is_run = true,
-                                                   .lower = lower(&springs[first]), .upper = upper(&springs[first])};
-}
-
-static void add_loose(arrangement *to, size_t first, size_t count)
-{
-    stretch *last = to->stretch_count > 0 ? &to->stretches[to->stretch_count - 1] : NULL;
-
-    if (count > 0 && last && !last->is_run)
-        last->count += count;
-    else if (count > 0)
-        to->stretches[to->stretch_count++] = (stretch){.first = first, .count = count};
-}
-
-/*
- * Loose springs stand by groups of blocks of their lower end, in a group by the block of the upper end: the lower ends' blocks
- * stay in the second-level cache (9 KiB each, with forces), and each upper block comes by once a group. Measured in a random
- * net of 4e5 springs in double: 17 ns a spring, 23 in the order of the lower ends alone, 20 with groups of 8 blocks.
- */
-#define GROUP_BLOCKS 32
-
-static bool same_group(uint32_t a, uint32_t b)
-{
-    return a / (GROUP_BLOCKS * STF_BLOCK_MAX) == b / (GROUP_BLOCKS * STF_BLOCK_MAX);
-}
-
-static int compare_loose(const void *left, const void *right)
-{
-    const stf_spring *a = left, *b = right;
-    const int order = compare_numbers(upper(a) / STF_BLOCK_MAX, upper(b) / STF_BLOCK_MAX);
-
-    return order ? order : compare_springs(left, right);
-}
-
-static void find_stretches(const stf_spring *springs, size_t spring_count, arrangement *found)
-{
-    size_t added = 0; /* loose springs that are in a stretch */
-
-    found->stretch_count = found->loose_count = 0;
-    for (size_t first = 0, n; first < spring_count; first += n) {
-        n = run_length(springs + first, spring_count - first);
-        if (n >= RUN_MIN)
-            add_run(found, springs, first, n);
-        for (size_t i = first; n < RUN_MIN && i < first + n; i++)
-            found->loose[found->loose_count++] = springs[i];
-        if (first + n == spring_count || !same_group(lower(&springs[first + n]), lower(&springs[first]))) {
-            stf_sort(found->loose + added, found->loose_count - added, sizeof *springs, compare_loose);
-            add_loose(found, added, found->loose_count - added);
-            added = found->loose_count;
-        }
-    }
-}
-
-static void spring_arrange(void *records, size_t record_count)
-{
-    const stf_spring *springs = records;
-    arrangement *arranged = stf_force_arranged(records, record_count, sizeof *springs);
-
-    stf_sort(records, record_count, sizeof *springs, compare_springs);
-    arranged->stretches = (stretch *)(arranged + 1);
-    arranged->stiffness = (stf_real *)(arranged->stretches + stretches_max(record_count));
-    arranged->damping = arranged->stiffness + record_count;
-    arranged->rest_length = arranged->damping + record_count;
-    arranged->loose = (stf_spring *)(arranged->rest_length + record_count);
-    find_stretches(springs, record_count, arranged);
-    for (size_t s = 0; s < record_count; s++) {
-        arranged->stiffness[s] = springs[s].stiffness;
-        arranged->damping[s] = springs[s].damping;
-        arranged->rest_length[s] = springs[s].rest_length;
-    }
-}
-
 /* A run: the ends of its first spring, where their parameters start, and the state of the particles. */
 typedef struct run {
     uint32_t lower, upper;
@@ -186,14 +39,14 @@ static inline bool is_mine(const stf_particles *all, size_t particle) { return p
 
 /*
  * newtons = f d of n springs, F = -f d, in rows of STF_BLOCK_MAX; the ends start at the offsets a and b. `dimensions` is a
- * constant at each call, so the compiler makes a loop for each; n is a multiple of RUN_MIN, so it needs none for a rest.
+ * constant at each call, so the compiler makes a loop for each; n is a multiple of STF_RUN_MIN, so it needs none for a rest.
  */
 STF_INLINE void run_forces(unsigned dimensions, size_t n, size_t stride, const stf_real *restrict x,
                               const stf_real *restrict v, size_t a, size_t b, const stf_real *restrict stiffness,
                               const stf_real *restrict damping, const stf_real *restrict rest_length,
                               stf_real *restrict newtons)
 {
-    for (size_t i = 0; i < n / RUN_MIN * RUN_MIN; i++) {
+    for (size_t i = 0; i < n / STF_RUN_MIN * STF_RUN_MIN; i++) {
         const size_t ai = a + i, bi = b + i;
         const stf_real dx = x[ai] - x[bi], wx = v[ai] - v[bi];
         const stf_real dy = dimensions > 1 ? x[ai + stride] - x[bi + stride] : 0;
@@ -246,14 +99,14 @@ static void apply_run(size_t n, const run *r)
     const stf_particles *all = r->all;
     const size_t a = stf_particles_offset(all, r->lower), b = stf_particles_offset(all, r->upper);
     const bool a_is_mine = is_mine(all, r->lower), b_is_mine = is_mine(all, r->upper);
-    const size_t whole = n / RUN_MIN * RUN_MIN;
+    const size_t whole = n / STF_RUN_MIN * STF_RUN_MIN;
     stf_real newtons[STF_DIMENSIONS_MAX * STF_BLOCK_MAX];
 
     if (!a_is_mine && !b_is_mine)
         return;
     run_part(whole, 0, r, newtons);
     if (whole < n)
-        run_part(RUN_MIN, n - RUN_MIN, r, newtons); /* some twice: cheaper than one by one */
+        run_part(STF_RUN_MIN, n - STF_RUN_MIN, r, newtons); /* some twice: cheaper than one by one */
     for (unsigned d = 0; d < all->dimensions && a_is_mine; d++)
         subtract(n, all->force + a + d * all->stride, newtons + d * STF_BLOCK_MAX);
     for (unsigned d = 0; d < all->dimensions && b_is_mine; d++)
@@ -335,10 +188,10 @@ static void apply_loose(size_t n, const stf_spring *loose, const stf_particles *
 static void spring_apply(const void *records, size_t record_count, const stf_particles *all, double time)
 {
     const stf_spring *springs = records;
-    const arrangement *arranged = stf_force_arranged(records, record_count, sizeof *springs);
+    const stf_spring_order *arranged = stf_force_arranged(records, record_count, sizeof *springs);
     (void)time;
 
-    for (const stretch *s = arranged->stretches; s < arranged->stretches + arranged->stretch_count; s++) {
+    for (const stf_stretch *s = arranged->stretches; s < arranged->stretches + arranged->stretch_count; s++) {
         const run r = {s->lower, s->upper, arranged->stiffness + s->first, arranged->damping + s->first,
                        arranged->rest_length + s->first, all};
 
@@ -375,6 +228,6 @@ const stf_force stf_force_springs = {
     .potential = spring_potential,
     .check = spring_check,
     .renumber = spring_renumber,
-    .arrange = spring_arrange,
-    .arranged_size = arranged_size,
+    .arrange = stf_springs_arrange,
+    .arranged_size = stf_springs_arranged_size,
 };

@@ -156,7 +156,8 @@ static void eliminate(size_t n, double complex *m, double tiny)
     }
 }
 
-/* U^H U x = x, a few times: inverse iteration for the smallest singular value of m, which P and L of norms about 1 change little. */
+/* U^H U x = x, a few times: inverse iteration for the smallest singular value of m, which P and L, of norms about 1, change
+   little. */
 void stf_null_vector(size_t n, double complex *m, double complex *x)
 {
     double largest = LEAST;

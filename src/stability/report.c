@@ -1,4 +1,4 @@
-/* What the limiting mode is in the world: which particle moves most in it, which force does most, how many substeps it takes. */
+/* The limiting mode in the world: which particle moves most in it, which force does most, how many substeps it takes. */
 #include <string.h>
 
 #include "../real.h"
