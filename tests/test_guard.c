@@ -218,7 +218,7 @@ static const stf_parallel parallels[] = {{.tasks = 0}, {.run = run_elsewhere, .t
 /* Whether the step that finds a fault comes when it should; flags need arithmetic that raises them. */
 static void assert_found_in_time(const scenario *s, const stf_world *world, stf_fault fault, uint64_t start, uint64_t end)
 {
-    const unsigned interval = stf_world_guard(world).interval ? stf_world_guard(world).interval : s->is_tied ? 16 : 256;
+    const unsigned interval = stf_world_guard(world).interval ? stf_world_guard(world).interval : s->is_tied ? 16 : 512;
 
     assert_true(fault.tick <= end);
     if (s->is_seen_at_once)
@@ -294,7 +294,7 @@ static void check_report(const scenario *s, const stf_integrator *integrator, un
         }
     }
     if (reports == 0) { /* the look comes later */
-        assert_refused(stf_world_step(world, 256), STF_ERROR_DIVERGED);
+        assert_refused(stf_world_step(world, 512), STF_ERROR_DIVERGED);
         reports++;
     }
     assert_int_equal(reports, 1);
@@ -515,7 +515,7 @@ static void setting_a_guard_leaves_the_flags_alone(void **state)
     stf_world_destroy(world);
 }
 
-/* The interval of 256 ticks that had begun is one of 16 from then on; no flag tells of a NaN that is read. */
+/* The interval of 512 ticks that had begun is one of 16 from then on; no flag tells of a NaN that is read. */
 static void a_link_brings_the_next_look_forward(void **state)
 {
     (void)state;

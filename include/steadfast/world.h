@@ -26,7 +26,7 @@ typedef enum stf_guard_mode {
 
 typedef struct stf_guard {
     stf_guard_mode mode;
-    unsigned interval;     /* ticks from a look at every particle to the next; 0: 16 where a link force acts, else 256 */
+    unsigned interval;     /* ticks from a look at every particle to the next; 0: 16 where a link force acts, else 512 */
     double position_bound; /* m, for the magnitude of each component; 0: all that is finite */
     double velocity_bound; /* m/s, likewise */
 } stf_guard;

@@ -175,9 +175,12 @@ static stf_result diverged(stf_world *world, unsigned ticks_left)
 static bool needs_checkpoint(const stf_world *world, unsigned ticks)
 {
     const stf_checkpoint *checkpoint = &world->checkpoint;
-    const bool is_late = checkpoint->next <= world->ticks || checkpoint->next - world->ticks > stf_guard_interval(world);
 
-    return !checkpoint->is_valid && (world->guard.mode == STF_GUARD_FREEZE || ticks > 1 || is_late);
+    if (checkpoint->is_valid)
+        return false;
+    if (world->guard.mode == STF_GUARD_FREEZE || ticks > 1)
+        return true;
+    return checkpoint->next <= world->ticks || checkpoint->next - world->ticks > stf_guard_interval(world);
 }
 
 stf_result stf_guard_step(stf_world *world, unsigned ticks)

@@ -62,7 +62,7 @@ typedef struct bench_precision {
 
 extern const bench_precision bench_float, bench_double;
 
-#define BENCH_INTERVAL 256 /* the guard's longest of its own */
+#define BENCH_INTERVAL 512 /* the guard's longest of its own */
 
 /* Springs of a scene. */
 size_t bench_springs(const bench_scene *scene);
