@@ -641,9 +641,26 @@ static void forces_at_rest_are_minus_the_gradient_of_the_potential(void **state)
     }
 }
 
+static void push_with_nothing(const void *records, size_t count, const stf_particles *particles, double time)
+{
+    (void)records, (void)count, (void)particles, (void)time;
+}
+
+static double sum_of_speeds(const void *records, size_t count, const stf_particles *particles, double time)
+{
+    double sum = 0;
+    (void)records, (void)count, (void)time;
+
+    for (size_t i = 0; i < particles->count; i++)
+        sum += (double)particles->velocity[stf_particles_offset(particles, i) + particles->stride];
+    return sum;
+}
+
+static const stf_force speeds = {.name = "speeds", .apply = push_with_nothing, .potential = sum_of_speeds};
+
 /*
  * Springs to the origin and to the first particle, from every block and its edges: k l^2 / 2 each, whatever block they are
- * in.
+ * in. And a user's potential that reads velocities.
  */
 static void potentials_count_every_block_once(void **state)
 {
@@ -656,7 +673,9 @@ static void potentials_count_every_block_once(void **state)
     double expected = 0;
 
     for (size_t i = 0; i < COUNT; i++)
-        assert_ok(stf_world_add(world, &(stf_particle){.position = {0, (stf_real)i, 0}, .inverse_mass = 1}, NULL));
+        assert_ok(stf_world_add(world, &(stf_particle){.position = {0, (stf_real)i, 0}, .velocity = {0, (stf_real)i, 0},
+                                                       .inverse_mass = 1}, NULL));
+    expected += COUNT * (COUNT - 1) / 2;
     for (size_t s = 0; s < COUNT_OF(held); s++) {
         anchored[s] = (stf_anchored_spring){.particle = held[s], .stiffness = 2};
         springs[s] = (stf_spring){.a = 0, .b = held[s], .stiffness = 4};
@@ -664,6 +683,7 @@ static void potentials_count_every_block_once(void **state)
     }
     assert_ok(stf_world_add_force(world, &stf_force_anchored_springs, anchored, COUNT_OF(held), NULL));
     assert_ok(stf_world_add_force(world, &stf_force_springs, springs, COUNT_OF(held), NULL));
+    assert_ok(stf_world_add_force(world, &speeds, NULL, 0, NULL));
     assert_ok(stf_world_energy(world, &energy));
     assert_true(energy.potential == expected); /* whole numbers */
     stf_world_destroy(world);
