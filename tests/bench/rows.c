@@ -276,13 +276,14 @@ static void small_groups(bench_group *g, const bench_precision *p, const taker *
 }
 
 /* Up to what still takes seconds: a run is an interval. */
-static void guard_groups(bench_group *g, const bench_precision *p, const taker *to)
+static void guard_groups(bench_group *g, const bench_precision *p, const taker *to, bool quick)
 {
     static const size_t small[] = {1, 100};
+    const size_t most = quick ? QUICK_MOST : 10 * QUICK_MOST;
 
     for (size_t i = 0; i < COUNT_OF(small); i++)
         guard_group(fresh(g), p, "guard, step of a small world", (bench_scene){FREE, LIBRARY, EULER, small[i]}), give(g, to);
-    for (size_t c = 0; counts[c] <= QUICK_MOST; c++)
+    for (size_t c = 0; counts[c] <= most; c++)
         guard_group(fresh(g), p, "guard, semi_implicit_euler", (bench_scene){FREE, LIBRARY, EULER, counts[c]}), give(g, to);
     guard_group(fresh(g), p, "guard, rk4", (bench_scene){FREE, LIBRARY, RK4, counts[2]}), give(g, to);
     guard_group(fresh(g), p, "guard, quadratic drag and attractor", (bench_scene){FIELD, LIBRARY, RK4, 1000}), give(g, to);
@@ -306,7 +307,7 @@ void bench_groups(bool quick, void (*take)(bench_group *group, void *user), void
         for (size_t c = 0; c < COUNT_OF(counts) - 1 && (!quick || counts[c] <= QUICK_MOST); c += 3)
             field_group(fresh(&g), p, counts[c]), give(&g, &to);
         small_groups(&g, p, &to);
-        guard_groups(&g, p, &to);
+        guard_groups(&g, p, &to, quick);
         if (quick)
             continue;
         rest_group(fresh(&g), p, counts[COUNT_OF(counts) - 2]), give(&g, &to);
