@@ -22,7 +22,7 @@ extern "C" {
 typedef struct stf_particle {
     stf_vector position;   /* m */
     stf_vector velocity;   /* m/s */
-    stf_real inverse_mass; /* 1/kg; 0: nothing pushes it, it keeps its velocity */
+    stf_real inverse_mass; /* 1/kg; 0: nothing pushes it, it keeps its velocity, or comes to rest (below) */
     stf_real radius;       /* m; kept only by worlds with keep_radius, and used by no force of the library */
 } stf_particle;
 

@@ -79,10 +79,17 @@ void model_clear(model *m)
     m->count = 0;
 }
 
-/* Position Verlet keeps the distance of a step, and so a velocity but for round-off. */
-static bool is_same_velocity(const model *m, stf_vector a, stf_vector b)
+/* But for what is so small that it comes to rest. */
+static bool is_kept(stf_real after, stf_real before)
 {
-    return (a.x == b.x && a.y == b.y && a.z == b.z) || m->integrator == &stf_position_verlet;
+    return after == before || (after == 0 && before < STF_AT_REST && before > -STF_AT_REST);
+}
+
+/* Position Verlet keeps the distance of a step, and so a velocity but for round-off. */
+static bool is_same_velocity(const model *m, stf_vector after, stf_vector before)
+{
+    return (is_kept(after.x, before.x) && is_kept(after.y, before.y) && is_kept(after.z, before.z)) ||
+           m->integrator == &stf_position_verlet;
 }
 
 void model_step(model *m, const stf_world *world, unsigned ticks)
