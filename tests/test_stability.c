@@ -765,6 +765,22 @@ static void drag_is_found_where_all_rests(void **state)
     stf_world_destroy(world);
 }
 
+/* Shots that nothing but drag acts on: no round-off is shown as a swing. */
+static void drag_alone_does_not_swing(void **state)
+{
+    (void)state;
+    stf_world *world;
+
+    assert_ok(scene_create(&scene_volley, NULL, &world));
+    for (int tick = 0; tick < 300; tick += 30) {
+        const stf_stability found = stability_of(world);
+        assert_true(found.damping > 0);
+        assert_true(found.omega == 0 && found.omega_dt == 0);
+        assert_ok(stf_world_step(world, 30));
+    }
+    stf_world_destroy(world);
+}
+
 /* A position that overflows, and a velocity. */
 static void a_state_that_is_not_finite_is_refused(void **state)
 {
@@ -862,6 +878,7 @@ int main(void)
         cmocka_unit_test(infinite_forces_are_refused),
         cmocka_unit_test(a_force_that_sleeps_is_not_asked_for_its_share),
         cmocka_unit_test(drag_is_found_where_all_rests),
+        cmocka_unit_test(drag_alone_does_not_swing),
         cmocka_unit_test(a_state_that_is_not_finite_is_refused),
         cmocka_unit_test(a_world_past_all_time_is_refused),
         cmocka_unit_test(an_integrator_that_forgets_all_is_steady_and_one_that_explodes_never),

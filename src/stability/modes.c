@@ -91,6 +91,8 @@ static void look_at(stf_search *s, stf_mode *m, const stf_mode *before, double l
         s->growth = fmax(s->growth, growth);
         return;
     }
+    if (cabs(m->alpha) < noise * size * size)
+        m->alpha = 0; /* nothing that pulls it back either: round-off would be seen as a swing */
     if (creal(m->alpha) > 0)
         m->alpha -= creal(m->alpha); /* no force that drives it apart */
     if (creal(m->beta) > -noise * size)
