@@ -39,9 +39,9 @@ bool frame_draw(canvas *c, const frame *f, session *s)
         stage_draw_hand(c, s, &view, f->hand);
     stage_legend(c, s, (double)(view.area.x + view.area.w - 4 * c->unit), (double)(view.area.y + 2 * c->unit));
     const double free_y = f->show_hud ? hud_draw(c, &f->figures, s) : (double)view.area.y;
-    hud_draw_messages(c, s, free_y, f->still, f->message);
+    const double panels_end = hud_draw_messages(c, s, free_y, f->still, f->message);
     if (f->show_hints)
-        hud_draw_hints(c, s);
+        hud_draw_hints(c, s, panels_end);
     if (f->show_help)
         hud_draw_help(c);
     return canvas_end(c);

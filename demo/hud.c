@@ -130,18 +130,19 @@ static double draw_loss(canvas *c, double y, const session *s, const actor *a, b
     return draw_message(c, y, a == &s->main ? COLOUR_WARNING : COLOUR_GHOST, text);
 }
 
-void hud_draw_messages(canvas *c, const session *s, double y, bool still, const char *message)
+double hud_draw_messages(canvas *c, const session *s, double y, bool still, const char *message)
 {
     y = draw_loss(c, y, s, s->main.lost ? &s->main : &s->ghost, still); /* without its world a ghost is no news */
-    if (message)
-        draw_message(c, y, COLOUR_TEXT, message);
+    return message ? draw_message(c, y, COLOUR_TEXT, message) : y;
 }
 
-void hud_draw_hints(canvas *c, const session *s)
+void hud_draw_hints(canvas *c, const session *s, double panels_end)
 {
     const double y = c->height - ((double)HINTS_HEIGHT / 2 + 4) * (double)c->unit - c->fonts[TEXT_SMALL].height / 2.0;
     char text[WRAP_TEXT];
 
+    if (panels_end > y)
+        return;
     snprintf(text, sizeof text,
              "F1 keys   [ ] scene   digit integrator   G ghost   P pause   O step   R restart   , . step size   + − speed%s",
              s->settings.scene == &scene_drag ? "" : "   drag a particle");

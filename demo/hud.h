@@ -11,11 +11,11 @@ double hud_draw(canvas *c, const figures *f, const session *s);
 /* What is left beside the panel, if it is shown, and above the line of keys. */
 SDL_FRect hud_free_area(const canvas *c, bool shown);
 
-/* A lost particle, and whatever is to be said for a moment (NULL: nothing), in panels from y on. */
-void hud_draw_messages(canvas *c, const session *s, double y, bool still, const char *message);
+/* A lost particle, and whatever is to be said for a moment (NULL: nothing), in panels from y on. Returns the y below them. */
+double hud_draw_messages(canvas *c, const session *s, double y, bool still, const char *message);
 
-/* The line at the bottom. */
-void hud_draw_hints(canvas *c, const session *s);
+/* The line at the bottom; none where panels reach down to `panels_end`, into it. */
+void hud_draw_hints(canvas *c, const session *s, double panels_end);
 
 /* All keys, over everything. */
 void hud_draw_help(canvas *c);

@@ -9,7 +9,7 @@ typedef enum run_mode { MODE_WINDOW, MODE_HEADLESS, MODE_PICTURES, MODE_LIST, MO
 
 /* px. A window or picture that is smaller has no room for figures that can be read. */
 #define WIDTH_MIN 800
-#define HEIGHT_MIN 520
+#define HEIGHT_MIN 640
 
 struct options {
     run_mode mode;
