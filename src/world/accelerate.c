@@ -179,7 +179,7 @@ static void accelerate(stf_system *system, double time, const stf_real *position
     request q = {.range = range, .time = time, .position = position, .velocity = velocity, .acceleration = acceleration};
 
     q.parts = range->parts;
-    if (q.parts == 1 || !range->is_tied || !any_pushes(world, STF_LINK, false)) {
+    if (q.parts == 1 || !any_pushes(world, STF_LINK, false)) { /* only what links tie is in parts */
         stf_world_run(world, q.parts, whole_part, &q);
         return;
     }
