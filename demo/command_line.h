@@ -29,7 +29,7 @@ void command_line_print_integrators(void);
 /* On stderr, in one line behind the command's name. Always false. */
 STF_PRINTF(1, 2) bool complain(const char *format, ...);
 
-/* What a value says. NULL or false: it does not, which has been said. */
+/* Read a value. NULL or false: it is none, and stderr says so. */
 const scene *read_scene(const char *value);
 const stf_integrator *read_integrator(const char *value);
 bool read_whole(const char *option_name, const char *value, uint64_t least, uint64_t most, uint64_t *number);

@@ -48,12 +48,13 @@ static int work(void *user)
     workers *w = user;
     const unsigned number = (unsigned)SDL_AtomicAdd(&w->numbers, 1) + 1;
 
-    for (int seen = 0;; seen++) {
+    for (int seen = 0;;) {
         look_for_change(&w->round, seen);
         SDL_LockMutex(w->mutex);
         while (SDL_AtomicGet(&w->round) == seen && !w->stop)
             SDL_CondWait(w->work_came, w->mutex);
         const bool stop = w->stop;
+        seen = SDL_AtomicGet(&w->round);
         SDL_UnlockMutex(w->mutex);
         if (stop)
             return 0;

@@ -8,8 +8,8 @@ static uint32_t upper(const stf_spring *s) { return s->a < s->b ? s->b : s->a; }
 
 static int compare_numbers(uint32_t a, uint32_t b) { return (a > b) - (a < b); }
 
-/* By the block of the lower end, by the difference of the ends, by the lower end; and in the end by all fields, as springs of
-   the same ends have one order too. */
+/* By the block of the lower end, by the difference of the ends, by the lower end; and in the end by all fields, so that springs
+   of the same ends have one order too. */
 static int compare_springs(const void *left, const void *right)
 {
     const stf_spring *a = left, *b = right;
@@ -25,6 +25,8 @@ static int compare_springs(const void *left, const void *right)
         order = stf_compare_reals(a->damping, b->damping);
     if (order == 0)
         order = stf_compare_reals(a->rest_length, b->rest_length);
+    if (order == 0)
+        order = compare_numbers(a->a, b->a);
     return order;
 }
 

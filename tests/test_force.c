@@ -359,7 +359,7 @@ static void the_order_of_springs_changes_no_bit(void **state)
 static void springs_of_the_same_ends_are_kept_in_one_order(void **state)
 {
     (void)state;
-    enum { TWINS = 5 };
+    enum { TWINS = 6, TURNED = 3 };
     stf_spring springs[TWINS], first[TWINS];
     stf_world *world = random_world(3, 2);
     stf_force_id id;
@@ -367,7 +367,8 @@ static void springs_of_the_same_ends_are_kept_in_one_order(void **state)
     uint64_t seed = 4;
 
     for (size_t s = 0; s < TWINS; s++) /* pairs that differ in one field each, the last in none */
-        springs[s] = (stf_spring){.a = 0, .b = 1, .stiffness = s == 0, .damping = s == 1, .rest_length = s == 2};
+        springs[s] = (stf_spring){.a = s == TURNED, .b = s != TURNED,
+                                  .stiffness = s == 0, .damping = s == 1, .rest_length = s == 2};
     assert_ok(stf_world_add_force(world, &stf_force_springs, springs, TWINS, &id));
     memcpy(first, stf_world_force_records(world, id, &count), sizeof first);
     for (int round = 0; round < 50; round++) {

@@ -77,11 +77,12 @@ STF_API const char *stf_result_text(stf_result result);
 STF_API const char *stf_version(void);
 
 /*
- * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL; `release`
- * gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create, destroy,
- * reserve, load, and functions that add particles or add, set or remove a force or set an integrator or a guard: never in a
- * step. stf_world_restore may release, and never allocates. A world that is larger than the caches is up to a third faster on
- * huge pages, which `allocate` can ask its system for (of malloc: GLIBC_TUNABLES=glibc.malloc.hugetlb=1).
+ * Where a world gets its memory. `allocate` returns `size` bytes aligned to `alignment` (a power of two), or NULL;
+ * `release` gets the same size back. Both get `user`. All zero means malloc and free. A world calls them only from create,
+ * destroy, reserve, load, and functions that add particles or add, set or remove a force or set an integrator or a guard:
+ * never in a step. stf_world_restore may release, and never allocates. A step of a world that is larger than the caches
+ * takes up to a third less time on huge pages, which `allocate` can ask its system for (of malloc:
+ * GLIBC_TUNABLES=glibc.malloc.hugetlb=1).
  */
 typedef struct stf_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);
@@ -95,8 +96,9 @@ typedef struct stf_allocator {
  * have the same floating-point mode. Only stf_world_step calls it, from the thread that called that: once a call where no link
  * force acts; else for each acceleration, each round of a link in it, each loop of the integrator, and every
  * STF_SETTLE_TICKS ticks; and for the looks of a guard. What is too small to gain stays on the caller's thread: a world of
- * one block, and without links one of fewer than eight (some 2,000 floats). Rounds apart, an index has the same particles in
- * every call, which on the same thread are in its cache. A task wants some 16 KiB of stack.
+ * one block, and without links one of fewer than eight (some 2,000 particles in float, 1,000 in double). Rounds and looks
+ * apart, an index has the same particles in every call: where it stays on one thread, it finds them in that core's cache. A
+ * task wants some 16 KiB of stack.
  */
 typedef struct stf_parallel {
     void (*run)(void *user, unsigned tasks, void (*task)(void *context, unsigned index), void *context);

@@ -17,13 +17,13 @@
  * Anal. Appl. 26, 640 (2005) (reduction); F. Tisseur, K. Meerbergen, SIAM Rev. 43, 235 (2001) (modes of x'' = A x + B x').
  *
  * What it can't know: it is linear, and of this moment. A scene that gets stiffer (a cloth that is stretched, an orbit that
- * comes closer) wants another look. Modes that are much slower than the fastest, growth among them (some 1/20 in float, 1/6 in
- * nets; 1/1000 in double), are not told from free motion: beside a growth, a limit of INFINITY only says that no mode could be
- * told, as in a rope that a step of far too long has crumpled. Where dampers are in proportion to springs, limits are right
- * within 2 %. In 20 nets of 200 masses with springs and dampers of all kinds, limits were up to some 20 % too long; the
- * advice, which keeps away from them by STF_STABILITY_SAFETY, held in all. Explicit Euler is the exception: it is limited by
- * the least damped mode, which in large nets hides among the others, and its limit may be off by half. Where springs buckle,
- * the limits of midpoint and improved Euler may be too short.
+ * comes closer) wants another look. Modes that are much slower than the fastest, or than a growth, are not told from free
+ * motion: below some 1/20 of it in float (1/6 in nets), 1/1000 in double. So where growth is above 0, a limit of INFINITY
+ * only says that no mode could be told, as in a rope that a far too long step has crumpled. Where dampers are in proportion
+ * to springs, limits are right within 2 %. In 20 nets of 200 masses with springs and dampers of all kinds, limits were up
+ * to some 20 % too long; the advice, which keeps away from them by STF_STABILITY_SAFETY, held in all. Explicit Euler is the
+ * exception: it is limited by the least damped mode, which in large nets hides among the others, and its limit may be off
+ * by half. Where springs buckle, the limits of midpoint and improved Euler may be too short.
  */
 #ifndef STEADFAST_STABILITY_H
 #define STEADFAST_STABILITY_H
@@ -52,7 +52,7 @@ typedef struct stf_stability {
     double limit;          /* s, the step of the integrator beyond which it grows; 0: at every step; INFINITY: none found */
     double step;           /* s, the present one: step of the world / substeps */
     double load;           /* step / limit: below 1 it is steady, from 1 on it grows */
-    double omega;          /* rad/s: sqrt(stiffness / mass) of the mode */
+    double omega;          /* rad/s: sqrt(stiffness / mass) of the mode; 0 where damping leaves no swing to be told */
     double damping;        /* k of the mode, 1/s: drag over mass */
     double omega_dt, k_dt; /* omega and damping times the present step */
     size_t particle;       /* the one that moves most in the mode */

@@ -114,8 +114,8 @@ typedef struct stf_trade_def {
     const unsigned *steps; /* how many make the duration: each a multiple of the samples or a whole part of them */
     size_t steps_count;
     unsigned repeats;      /* 0: 25 */
-    double repeat_seconds; /* how long one repeat of one row takes at least; of a longer run the start is timed; at most some
-                              hundred times that, however coarse the timer is, or 100,000 runs; 0: 0.00025 */
+    double repeat_seconds; /* s, how long one repeat of one row takes at least; of a longer run the start is timed. A coarse
+                              timer may take a hundred times that; no repeat is more than 100,000 runs. 0: 0.00025 */
     double (*seconds)(void *user);                           /* a timer, with `user`; NULL: C's clock() */
     void (*progress)(void *user, size_t done, size_t total); /* called now and then, with `user`; NULL */
     stf_allocator allocator;                                 /* all zero: malloc and free */

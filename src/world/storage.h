@@ -52,9 +52,10 @@ typedef struct stf_kept {
 
 #define STF_KEPT_MAX (7 + STF_HISTORY_ARRAYS_MAX)
 
-/* All of them, the history last, in an order that depends on nothing; returns how many. And without history that the world's
-   integrator does not have. */
+/* All of them, the history last, in an order that depends on nothing; returns how many. */
 size_t stf_storage_kept(const stf_storage *storage, size_t dimensions, stf_kept kept[STF_KEPT_MAX]);
+
+/* Likewise, without history that the world's integrator does not have. */
 size_t stf_world_kept(const stf_world *world, stf_kept kept[STF_KEPT_MAX]);
 
 /* Where component d of particle i stands. */

@@ -1,5 +1,6 @@
 /* A pool of one thread beside the caller's, for stf_world_def.parallel: what an engine has already. POSIX threads. */
 #define _POSIX_C_SOURCE 200809L
+#define _DARWIN_C_SOURCE /* there _SC_NPROCESSORS_ONLN is beyond POSIX */
 #include "threads.h"
 
 #include <pthread.h>
@@ -16,8 +17,9 @@ static struct {
     pthread_cond_t more;
     void (*task)(void *context, unsigned index);
     void *context;
-    volatile unsigned next, end; /* tasks that nobody has taken; these three are written under the lock, and read */
-    volatile unsigned running;   /* tasks that are not done; without it only to see whether to take it */
+    /* Written under the lock, and read without it only to see whether to take it. */
+    volatile unsigned next, end; /* tasks that nobody has taken */
+    volatile unsigned running;   /* tasks that are not done */
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .more = PTHREAD_COND_INITIALIZER};
 
 /* A thread that sleeps for a lock wakes up microseconds after it is free. */

@@ -31,7 +31,7 @@ tests_of_part() {
     src/sum.h) echo test_compensated ;;
     src/kernels.c) echo test_settle test_guard ;;
     src/integrators/* | src/flight.h) echo test_integrator test_order test_linear ;;
-    src/forces/* | src/sort.*) echo test_force test_blocks ;;
+    src/forces/* | src/spring_order.* | src/sort.*) echo test_force test_blocks ;;
     src/stability/*) echo test_stability ;;
     src/trade/*) echo test_trade ;;
     *) echo test_world test_blocks ;;
