@@ -1,6 +1,8 @@
 /* A pool of one thread beside the caller's, for stf_world_def.parallel: what an engine has already. POSIX threads. */
 #define _POSIX_C_SOURCE 200809L
+#ifdef __APPLE__
 #define _DARWIN_C_SOURCE /* there _SC_NPROCESSORS_ONLN is beyond POSIX */
+#endif
 #include "threads.h"
 
 #include <pthread.h>
