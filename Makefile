@@ -392,10 +392,11 @@ soak: $(BUILD)/tests/test_soak-f32 $(BUILD)/tests/test_soak-f64
 # ---- coverage ----------------------------------------------------------------------------------------------------------------
 
 # Not optimised, and what is written into its callers counts once: then a way in the source is a way in the object file.
+# Atomic, as test_threads counts from several threads at once.
 .PHONY: coverage coverage-run
 coverage: | need-gcov
 	@$(MAKE) --no-print-directory CC=gcc BUILD=build/coverage OPTIMISE=-O0 LDFLAGS=--coverage \
-	    CFLAGS='--coverage -Dalways_inline=unused' coverage-run
+	    CFLAGS='--coverage -fprofile-update=atomic -Dalways_inline=unused' coverage-run
 
 coverage-run: $(TESTS)
 	@sh tests/coverage.sh $(BUILD) $(TESTS)

@@ -1,4 +1,5 @@
 /* The instrument measures what it says, knows what it does not know, and its picks hold. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -780,6 +781,39 @@ static void an_exact_solution_that_is_not_finite_is_refused(void **state)
     assert_null(reference);
 }
 
+/* Where it is at each time: what `user` points at. */
+typedef struct latest {
+    trade_scene scene; /* first, so that the scene is found */
+    double time;
+} latest;
+
+static bool exactly_at_rest(void *user, size_t particle, double time, double position[3], double velocity[3])
+{
+    latest *seen = user;
+    (void)particle;
+
+    seen->time = time > seen->time ? time : seen->time;
+    for (int d = 0; d < 3; d++)
+        position[d] = velocity[d] = 0;
+    return true;
+}
+
+static void times_of_the_longest_duration_are_finite(void **state)
+{
+    (void)state;
+    latest seen = {.scene = TRADE_FALL};
+    stf_trade_reference *reference;
+
+    assert_ok(stf_trade_reference_create(&(stf_trade_reference_def){.build = trade_scene_build_f64,
+                                                                    .exact = exactly_at_rest,
+                                                                    .user = &seen,
+                                                                    .duration = DBL_MAX,
+                                                                    .samples = 4},
+                                         &reference));
+    assert_true(seen.time == DBL_MAX);
+    stf_trade_reference_destroy(reference);
+}
+
 static unsigned looks; /* at the timer */
 
 /* By this one all that is measured takes longer than a look at it. */
@@ -840,6 +874,7 @@ int main(void)
         cmocka_unit_test(runs_are_timed_in_turn),
         cmocka_unit_test(where_nothing_is_nothing_is_wrong),
         cmocka_unit_test(an_exact_solution_that_is_not_finite_is_refused),
+        cmocka_unit_test(times_of_the_longest_duration_are_finite),
         cmocka_unit_test(zeros_of_a_def_are_the_documented_numbers),
     };
 

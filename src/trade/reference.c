@@ -55,7 +55,7 @@ static stf_result follow_exactly(stf_trade_reference *r, const stf_trade_referen
         /* A tick moves the world's time on, for potentials that depend on it; where it leaves the particles does not matter. */
         result = k > 0 ? stf_world_step(world, 1) : STF_OK;
         if (!result)
-            result = place_exactly(def, world, k * r->duration / r->samples, known);
+            result = place_exactly(def, world, r->duration * ((double)k / r->samples), known);
         if (!result)
             stf_trade_path_record(r, &r->path, k, world);
     }
