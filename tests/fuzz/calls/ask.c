@@ -139,17 +139,18 @@ void copy_positions(game *g)
 
 /* ---- accelerations ------------------------------------------------------------------------------------------------------ */
 
-/* Both worlds' accelerations where they stand, but `shift` s later; the immovable have none. */
+/* Both worlds' accelerations where they stand, but up to 16 s later; the immovable have none. */
 void accelerations(game *g)
 {
-    const double shift = take(&g->program) / 16.0, cost = model_tick_cost(&g->model);
+    const double time = model_time(&g->model) + take(&g->program) / 16.0, cost = model_tick_cost(&g->model);
+    const bool is_time = isfinite(time); /* ticks may have gone past all doubles */
     stf_particles views[2];
     stf_real *found[2];
 
     if (cost > g->work)
         return;
     g->work -= cost;
-    begin(g, "accelerations", 0);
+    begin(g, "accelerations", is_time ? 0 : 1U << STF_ERROR_NOT_FINITE);
     g->rations[0].closed = g->rations[1].closed = true;
     for (stf_world *world; (world = turn(g)) != NULL;) {
         const unsigned w = g->turns - 1;
@@ -158,10 +159,10 @@ void accelerations(game *g)
         views[w] = stf_world_view(world);
         const size_t blocks = (v->count + v->stride - 1) >> v->shift, reals = blocks * v->stride * v->dimensions;
         found[w] = exact(reals * sizeof(stf_real));
-        g->result = stf_world_accelerations(world, model_time(&g->model) + shift, v->position, v->velocity, found[w]);
+        g->result = stf_world_accelerations(world, time, v->position, v->velocity, found[w]);
     }
     g->rations[0].closed = g->rations[1].closed = false;
-    for (size_t i = 0; i < g->model.count; i++)
+    for (size_t i = 0; i < g->model.count && is_time; i++)
         for (unsigned d = 0; d < g->model.dimensions; d++) {
             const stf_real a = found[0][stf_particles_offset(&views[0], i) + d * views[0].stride];
             claim(is_same_real(a, found[1][stf_particles_offset(&views[1], i) + d * views[1].stride]));
