@@ -299,7 +299,7 @@ tidy: need-tool-clang-tidy
 analyser: need-tool-gcc
 	$(MAKE) library CC=gcc BUILD=build/analyser ISAS= OPTIMISE='-O1 -fanalyzer' WERROR=1
 
-# Valgrind knows no AVX-512. Left out are the two slowest tests: VALGRIND_TESTS=test_trade runs one.
+# Valgrind knows no AVX-512. Left out is the slowest test; VALGRIND_TESTS=test_stability runs it.
 valgrind: need-tool-valgrind
 	$(MAKE) BUILD=build/valgrind ISAS='$(filter avx2,$(ISAS))' OPTIMISE='-O2 -g' $(VALGRIND_RUNS)
 	for test in $(VALGRIND_RUNS); do $(VALGRIND) $$test || exit 1; done

@@ -741,9 +741,9 @@ static void describe_tells_of_the_guard(void **state)
     assert_refused(stf_world_step(world, TICKS), STF_ERROR_DIVERGED);
     stf_world_describe(world, text, sizeof text);
     assert_non_null(strstr(text, "m/s; found particle 1 at tick "));
-    assert_ok(stf_world_set_guard(world, (stf_guard){.mode = STF_GUARD_REPORT, .interval = 2, .velocity_bound = 2e4}));
+    assert_ok(stf_world_set_guard(world, (stf_guard){.mode = STF_GUARD_REPORT, .interval = 1, .velocity_bound = 2e4}));
     stf_world_describe(world, text, sizeof text);
-    assert_non_null(strstr(text, "guard: reports; a look at every particle each 2 ticks; up to 20000 m/s"));
+    assert_non_null(strstr(text, "guard: reports; a look at every particle each 1 tick; up to 20000 m/s"));
     stf_world_destroy(world);
 }
 
