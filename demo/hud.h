@@ -14,7 +14,7 @@ SDL_FRect hud_free_area(const canvas *c, bool shown);
 /* A lost particle, and whatever is to be said for a moment (NULL: nothing), in panels from y on. Returns the y below them. */
 double hud_draw_messages(canvas *c, const session *s, double y, bool still, const char *message);
 
-/* The line at the bottom; none where panels reach down to `panels_end`, into it. */
+/* The line at the bottom; none where the panels, which end at panels_end, reach into it. */
 void hud_draw_hints(canvas *c, const session *s, double panels_end);
 
 /* All keys, over everything. */
